@@ -1,0 +1,249 @@
+"""The one table of refusals and faults: number, code, cause, what the robot did, what to do.
+
+A refusal (R) answers an order that changed nothing; a fault (F) switched every coil off. `softrig explain CODE`
+prints a row, and the reference page is made from the table.
+"""
+
+from collections import namedtuple
+
+Code = namedtuple("Code", ("number", "name", "unit", "cause", "did", "todo"))
+
+NOT_ARMED, TRIPPED, UNKNOWN_CHANNEL, DUTY_LIMIT, HOLD_LIMIT, LEASE_HELD = 1, 2, 3, 4, 5, 6
+AT_ONCE_LIMIT, RESTING, BAD_PAYLOAD, UNKNOWN_MESSAGE, BAD_HEADER, OTHER_ROBOT = 7, 8, 9, 10, 11, 12
+TOO_LARGE, BAD_CODE, BUSY, NO_PROGRAM, LEASE_LIMIT, CAUSE_REMAINS = 13, 14, 15, 16, 17, 18
+OTHER_VERSION, UNFIT = 19, 20
+STOP, ESTOP, LEASE_EXPIRED, HEAT_BUDGET, OVER_TEMPERATURE, OVER_CURRENT = 101, 102, 103, 104, 105, 106
+SUPPLY_LOW, CHIP, SENSOR, GUARD, WAIT_TIMEOUT, WATCHDOG = 107, 108, 109, 110, 111, 112
+STRAY_CURRENT, ON_TOO_LONG, REFUSED_STEP = 113, 114, 115
+
+NOTHING = "Nothing changed."
+ALL_OFF = "All coils off, latched until clear."
+
+CODES = (
+    Code(
+        NOT_ARMED, "R01", "",
+        "The robot is not armed.",
+        NOTHING,
+        "Arm first; `run` and `fire` do it themselves.",
+    ),
+    Code(
+        TRIPPED, "R02", "",
+        "The robot has tripped and is latched.",
+        NOTHING,
+        "See the fault, mend its cause, then `softrig clear`.",
+    ),
+    Code(
+        UNKNOWN_CHANNEL, "R03", "",
+        "The robot has no such coil.",
+        NOTHING,
+        "`softrig info` lists the labels.",
+    ),
+    Code(
+        DUTY_LIMIT, "R04", "permille",
+        "The duty is above the coil's limit.",
+        NOTHING,
+        "Ask for less; the limit is in the robot's profile.",
+    ),
+    Code(
+        HOLD_LIMIT, "R05", "ms",
+        "The order lasts longer than one order may.",
+        NOTHING,
+        "Split it; each order must carry a short end of its own.",
+    ),
+    Code(
+        LEASE_HELD, "R06", "",
+        "Another session holds the lease.",
+        NOTHING,
+        "Wait until it ends or its lease runs out; `stop` works for everybody.",
+    ),
+    Code(
+        AT_ONCE_LIMIT, "R07", "coils",
+        "More coils would be on at once than the supply feeds.",
+        NOTHING,
+        "Fire fewer at once.",
+    ),
+    Code(
+        RESTING, "R08", "ms",
+        "The coil was on without a pause for as long as it may and must rest.",
+        NOTHING,
+        "Wait for the rest time.",
+    ),
+    Code(
+        BAD_PAYLOAD, "R09", "bytes",
+        "The payload does not fit its message.",
+        NOTHING,
+        "Use the table of messages of this robot.",
+    ),
+    Code(
+        UNKNOWN_MESSAGE, "R10", "",
+        "The robot does not know this message.",
+        NOTHING,
+        "Use the table of messages of this robot.",
+    ),
+    Code(
+        BAD_HEADER, "R11", "",
+        "The program has no header this firmware reads.",
+        NOTHING,
+        "Compile again with this version of softrig.",
+    ),
+    Code(
+        OTHER_ROBOT, "R12", "",
+        "The program was compiled for another robot or other limits.",
+        NOTHING,
+        "Compile it for this robot: `softrig run` does.",
+    ),
+    Code(
+        TOO_LARGE, "R13", "bytes",
+        "The program is larger than the robot's memory for it.",
+        NOTHING,
+        "Use repeat and def, or split the script.",
+    ),
+    Code(
+        BAD_CODE, "R14", "byte",
+        "The program failed its verification at this byte.",
+        NOTHING,
+        "Send it again; report it if it persists.",
+    ),
+    Code(
+        BUSY, "R15", "",
+        "A program is running.",
+        NOTHING,
+        "Wait for its end or cancel it.",
+    ),
+    Code(
+        NO_PROGRAM, "R16", "",
+        "No program was uploaded.",
+        NOTHING,
+        "Upload one first.",
+    ),
+    Code(
+        LEASE_LIMIT, "R17", "ms",
+        "The lease asked for is outside the robot's limits.",
+        NOTHING,
+        "Ask for a shorter lease.",
+    ),
+    Code(
+        CAUSE_REMAINS, "R18", "",
+        "The cause of the fault is still there.",
+        "Stays tripped.",
+        "Mend the cause, then clear.",
+    ),
+    Code(
+        OTHER_VERSION, "R19", "version",
+        "Host and robot speak different versions of the protocol.",
+        NOTHING,
+        "Update the older of the two.",
+    ),
+    Code(
+        UNFIT, "R20", "",
+        "The robot failed its self-test.",
+        NOTHING,
+        "`softrig status` names the fault; mend the wiring or the supply.",
+    ),
+    Code(
+        STOP, "F01", "",
+        "A stop was received.",
+        ALL_OFF,
+        "`softrig clear` when it is safe.",
+    ),
+    Code(
+        ESTOP, "F02", "",
+        "The emergency-stop loop is open.",
+        ALL_OFF,
+        "Close the loop, then `softrig clear`.",
+    ),
+    Code(
+        LEASE_EXPIRED, "F03", "ms",
+        "Nothing was heard from the host for the lease.",
+        "All coils off, disarmed.",
+        "Check the cable and the host; then run again.",
+    ),
+    Code(
+        HEAT_BUDGET, "F04", "mJ",
+        "A coil took more energy than its heat budget.",
+        ALL_OFF,
+        "Lower duty or time, or let it cool longer; `softrig check` predicts it.",
+    ),
+    Code(
+        OVER_TEMPERATURE, "F05", "0.1 C",
+        "A coil's estimated temperature is above its limit.",
+        ALL_OFF,
+        "Lower duty or time, or let it cool longer.",
+    ),
+    Code(
+        OVER_CURRENT, "F06", "mA",
+        "The supply current is above its limit.",
+        ALL_OFF,
+        "Look for a shorted coil; fire fewer at once.",
+    ),
+    Code(
+        SUPPLY_LOW, "F07", "mV",
+        "The supply voltage is below its limit.",
+        ALL_OFF,
+        "Charge or replace the supply; fire fewer at once.",
+    ),
+    Code(
+        CHIP, "F08", "I2C address",
+        "A chip does not answer or has lost its settings.",
+        "Coil supply switched off, latched.",
+        "Check the wiring of the bus, then `softrig clear`.",
+    ),
+    Code(
+        SENSOR, "F09", "0.1 C",
+        "A sensor reads a value that cannot be.",
+        ALL_OFF,
+        "Check the sensor and its wires.",
+    ),
+    Code(
+        GUARD, "F10", "",
+        "A guard of the program held.",
+        ALL_OFF,
+        "The report names the guard; change the script or its limits.",
+    ),
+    Code(
+        WAIT_TIMEOUT, "F11", "ms",
+        "A wait of the program ran out of time.",
+        "Program ended, all coils off, still armed.",
+        "Give it more time, or write `else continue`.",
+    ),
+    Code(
+        WATCHDOG, "F12", "",
+        "The firmware hung and was restarted.",
+        "Coils off by hardware, disarmed.",
+        "Keep the log and report it.",
+    ),
+    Code(
+        STRAY_CURRENT, "F13", "mA",
+        "Current flows although every coil is off.",
+        "Coil supply switched off, latched.",
+        "A MOSFET is stuck: replace it.",
+    ),
+    Code(
+        ON_TOO_LONG, "F14", "ms",
+        "A coil was on without a pause for longer than it may.",
+        ALL_OFF,
+        "Put a pause between its orders.",
+    ),
+    Code(
+        REFUSED_STEP, "F15", "",
+        "A step of the program asked for what the limits forbid.",
+        ALL_OFF,
+        "`softrig check` names the line; the event names the limit.",
+    ),
+)  # fmt: skip
+
+
+def row(number: int) -> Code | None:
+    """Return the row of that number, or None."""
+    for code in CODES:
+        if code.number == number:
+            return code
+    return None
+
+
+def named(name: str) -> Code | None:
+    """Return the row called `name` (R04, F05, ...), or None."""
+    for code in CODES:
+        if code.name == name.upper():
+            return code
+    return None

@@ -1,0 +1,220 @@
+"""The table of messages: the one place from which codec, reference page and dictionary are made.
+
+A message is a number, a name and its fields in wire order (little endian, no padding). A field's unit is the end of
+its name; its format is a struct letter, or `s` for the rest of the payload. The unit test vectors in `tests/` freeze
+the bytes.
+
+    payload = FIRE.pack(coils=1, duty_permille=600, hold_ms=500)
+    order = FIRE.unpack(payload)
+"""
+
+import struct
+from collections import namedtuple
+
+_RANGES = {
+    "B": (0, 0xFF),
+    "b": (-0x80, 0x7F),
+    "H": (0, 0xFFFF),
+    "h": (-0x8000, 0x7FFF),
+    "I": (0, 0xFFFFFFFF),
+    "i": (-0x80000000, 0x7FFFFFFF),
+}
+
+STATES = ("boot", "idle", "armed", "running", "tripped")
+BOOT, IDLE, ARMED, RUNNING, TRIPPED = 0, 1, 2, 3, 4
+
+EVENTS = ("", "started", "step", "finished", "aborted", "tripped", "disarmed", "cleared", "cut-off")
+STARTED, STEP, FINISHED, ABORTED, TRIP, DISARMED, CLEARED, CUT_OFF = 1, 2, 3, 4, 5, 6, 7, 8
+
+VIEWER, HOLDER = 0, 1
+
+
+class Field:
+    """One value of a message: its name (the unit is its end), its struct letter and what it means."""
+
+    def __init__(self, name: str, letter: str, help: str) -> None:
+        self.name = name
+        self.letter = letter
+        self.help = help
+
+
+class Message:
+    """One row of the table; packs and unpacks its payload, and refuses values that its fields cannot hold."""
+
+    def __init__(self, number: int, name: str, help: str, *fields) -> None:
+        self.number = number
+        self.name = name
+        self.help = help
+        self.fields = fields
+        self._open = bool(fields) and fields[-1].letter == "s"
+        self._format = "<" + "".join([field.letter for field in fields if field.letter != "s"])
+        self._size = struct.calcsize(self._format)
+        self._tuple = namedtuple(name, tuple([field.name for field in fields]))
+
+    def pack(self, **values) -> bytes:
+        """Return the payload; ValueError names a field that is missing, unknown or outside its range."""
+        if len(values) != len(self.fields):
+            raise ValueError(f"{self.name} takes {', '.join([field.name for field in self.fields])}")
+        numbers = [self._checked(field, values) for field in self.fields]
+        rest = numbers.pop() if self._open else b""
+        return struct.pack(self._format, *numbers) + rest
+
+    def unpack(self, payload: bytes):
+        """Return the fields as a named tuple; ValueError when the length is not this message's."""
+        if len(payload) < self._size or (len(payload) > self._size and not self._open):
+            raise ValueError(f"{self.name}: {len(payload)} bytes, expected {self._size}")
+        numbers = struct.unpack(self._format, payload[: self._size])
+        return self._tuple(*numbers, payload[self._size :]) if self._open else self._tuple(*numbers)
+
+    def line(self) -> str:
+        """Return this row as the dictionary prints it: `20 fire coils:I duty_permille:H hold_ms:H`."""
+        return " ".join([str(self.number), self.name] + [f"{field.name}:{field.letter}" for field in self.fields])
+
+    def _checked(self, field: Field, values: dict):
+        if field.name not in values:
+            raise ValueError(f"{self.name} needs {field.name}")
+        value = values[field.name]
+        if field.letter == "s":
+            return bytes(value)
+        low, high = _RANGES[field.letter]
+        if not low <= value <= high:
+            raise ValueError(f"{self.name}: {field.name} {value}, must be {low} to {high}")
+        return value
+
+
+HELLO = Message(
+    0x01, "hello", "Opens a session; the answer is `identity`. Never disturbs a program that is running.",
+    Field("version", "B", "Protocol version of the host."),
+    Field("session", "I", "Number the host chose for this session."),
+)  # fmt: skip
+IDENTITY = Message(
+    0x02, "identity", "Who the robot is; answers `hello`.",
+    Field("session", "I", "The session that said hello."),
+    Field("boot", "I", "Number of this start of the firmware: it changes with every reset."),
+    Field("dictionary_crc", "I", "CRC-32 of the dictionary text: the seed of all other frames."),
+    Field("dictionary_bytes", "H", "Length of the dictionary text."),
+    Field("version", "B", "Protocol version of the robot."),
+    Field("state", "B", "State of the robot, see STATES."),
+    Field("role", "B", "1: this session may arm; 0: another session holds the lease."),
+    Field("firmware", "s", "Version of the firmware, text."),
+)  # fmt: skip
+DICTIONARY = Message(
+    0x03, "dictionary", "Asks for a page of the dictionary text.",
+    Field("offset", "H", "First byte wanted."),
+)  # fmt: skip
+DICTIONARY_PAGE = Message(
+    0x04, "dictionary_page", "A page of the dictionary text.",
+    Field("offset", "H", "First byte of this page."),
+    Field("text", "s", "The page; empty beyond the end."),
+)  # fmt: skip
+STOPPED = Message(
+    0x05, "stopped", "Answers the stop pattern once every coil is off.",
+    Field("state", "B", "State of the robot, see STATES."),
+    Field("code", "H", "Why it is stopped, see the table of codes."),
+    Field("coils", "I", "Coils that were on when the stop arrived."),
+    Field("now_ms", "I", "The robot's clock."),
+)  # fmt: skip
+NAK = Message(
+    0x06, "nak", "An unseeded frame could not be served.",
+    Field("kind", "B", "Kind of the frame."),
+    Field("code", "H", "Why, see the table of codes."),
+    Field("version", "B", "Protocol version of the robot."),
+)  # fmt: skip
+
+ALIVE = Message(0x10, "alive", "Says only that the sender lives; carries its acknowledgement and renews the lease.")
+ARM = Message(
+    0x11, "arm", "Takes the lease and allows orders until it runs out.",
+    Field("session", "I", "The session that asks, as in its `hello`."),
+    Field("lease_ms", "H", "All coils off when nothing arrives for this long; 0 takes the robot's own."),
+)  # fmt: skip
+DISARM = Message(0x12, "disarm", "All coils off, lease returned.")
+CLEAR = Message(0x13, "clear", "Leaves the tripped state once its cause is gone.")
+FIRE = Message(
+    0x14, "fire", "Heat coils for a limited time; the order carries its own end.",
+    Field("coils", "I", "Bit mask of channels in the order of the profile."),
+    Field("duty_permille", "H", "Share of the PWM period that the coils are on; 0 switches them off."),
+    Field("hold_ms", "H", "Off again after this long unless driven anew."),
+)  # fmt: skip
+STATUS_REQUEST = Message(0x15, "status_request", "Asks for `status`.")
+SUBSCRIBE = Message(
+    0x16, "subscribe", "Sets how often the robot sends `telemetry`.",
+    Field("period_ms", "H", "Between two records; 0 ends it."),
+)  # fmt: skip
+PROGRAM = Message(
+    0x20, "program", "Begins the upload of a program.",
+    Field("header", "s", "The program's header, see program.py."),
+)  # fmt: skip
+CODE = Message(
+    0x21, "code", "A piece of the program's code.",
+    Field("offset", "H", "Its first byte."),
+    Field("code", "s", "The piece."),
+)  # fmt: skip
+START = Message(0x22, "start", "Verifies the uploaded program and runs it.")
+CANCEL = Message(0x23, "cancel", "Ends the running program: all coils off, still armed.")
+
+OK = Message(
+    0x40, "ok", "The request was taken.",
+    Field("request", "B", "Sequence number of the request."),
+)  # fmt: skip
+REFUSED = Message(
+    0x41, "refused", "The request was not taken; nothing changed.",
+    Field("request", "B", "Sequence number of the request."),
+    Field("code", "H", "Why, see the table of codes."),
+    Field("channel", "B", "The channel it is about, 255: none."),
+    Field("value", "i", "What was asked, in the unit of the limit."),
+    Field("limit", "i", "What is allowed."),
+)  # fmt: skip
+STATUS = Message(
+    0x42, "status", "Answers `status_request`.",
+    Field("request", "B", "Sequence number of the request."),
+    Field("state", "B", "State of the robot, see STATES."),
+    Field("code", "H", "Last fault, 0: none since boot."),
+    Field("uptime_ms", "I", "Time since boot."),
+    Field("lease_ms", "H", "What is left of the lease, 0: none."),
+    Field("step", "H", "Step of the program, 0: none."),
+    Field("coils", "I", "Coils that are on."),
+    Field("supply_mv", "H", "Supply voltage at the coils' rail."),
+    Field("current_ma", "H", "Supply current."),
+    Field("board_decidegc", "h", "Temperature of the board."),
+    Field("dropped", "H", "Damaged frames since boot, modulo 65536."),
+    Field("overruns", "H", "Control steps that came late, modulo 65536."),
+)  # fmt: skip
+TELEMETRY = Message(
+    0x50, "telemetry", "State of the robot, sent at the subscribed period and not repeated when lost.",
+    Field("now_ms", "I", "The robot's clock."),
+    Field("state", "B", "State of the robot, see STATES."),
+    Field("step", "H", "Step of the program, 0: none."),
+    Field("supply_mv", "H", "Supply voltage at the coils' rail."),
+    Field("current_ma", "H", "Supply current."),
+    Field("board_decidegc", "h", "Temperature of the board."),
+    Field("channels", "s", "Per channel: duty u16 [permille], estimated temperature i16 [0.1 C]."),
+)  # fmt: skip
+EVENT = Message(
+    0x51, "event", "Something happened; sent once and surely.",
+    Field("event", "B", "What, see EVENTS."),
+    Field("code", "H", "Why, see the table of codes; 0: in order."),
+    Field("step", "H", "Step of the program, 0: none."),
+    Field("channel", "B", "The channel it is about, 255: none."),
+    Field("value", "i", "What was measured, in the unit of the code's limit."),
+    Field("now_ms", "I", "The robot's clock."),
+)  # fmt: skip
+
+MESSAGES = (
+    HELLO, IDENTITY, DICTIONARY, DICTIONARY_PAGE, STOPPED, NAK,
+    ALIVE, ARM, DISARM, CLEAR, FIRE, STATUS_REQUEST, SUBSCRIBE, PROGRAM, CODE, START, CANCEL,
+    OK, REFUSED, STATUS, TELEMETRY, EVENT,
+)  # fmt: skip
+
+
+def by_number(number: int) -> Message | None:
+    """Return the message of that number, or None."""
+    for message in MESSAGES:
+        if message.number == number:
+            return message
+    return None
+
+
+def dictionary(profile: bytes) -> bytes:
+    """Return the dictionary of a robot: a line for each message, a blank line, its profile as it stands in flash."""
+    lines = [message.line() for message in MESSAGES]
+    return ("\n".join(lines) + "\n\n").encode() + profile

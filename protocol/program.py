@@ -1,0 +1,193 @@
+"""Programs: the op-codes that a host compiles and the robot's sequencer runs.
+
+A program is a 16-byte header and its code. Each op is one byte followed by little-endian arguments; all times are
+bounded, so a program always ends. The robot verifies the whole before it runs any of it.
+
+    code = fire(0b1, 1000, 700) + delay(700) + halt()
+    check_code(code, channels=8, bytes_max=8192)
+"""
+
+from binascii import crc32
+from collections import namedtuple
+
+HALT, FIRE, RAMP, DELAY, REPEAT, NEXT, WAIT, GUARD, STEP, OFF = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
+NAMES = ("halt", "fire", "ramp", "delay", "repeat", "next", "wait", "guard", "step", "off")
+SIZES = (1, 11, 13, 5, 3, 1, 14, 9, 3, 5)
+
+TEMPERATURE, CURRENT, VOLTAGE, BOARD = 1, 2, 3, 4  # sources of a condition
+ANY, ALL = 0, 1
+BELOW, ABOVE = 0, 1
+ABORT, CONTINUE = 0, 1  # what a wait does when its time is over
+
+FORMAT = 1
+HEADER_BYTES = 16
+OUTLIVES_HOST = 1  # header flag: keeps running when the lease runs out
+DEPTH_MAX = 8
+GUARDS_MAX = 8
+
+Header = namedtuple("Header", ("flags", "robot_crc", "length", "crc"))
+Condition = namedtuple("Condition", ("source", "quantifier", "compare", "value", "mask"))
+
+
+class BadProgram(ValueError):
+    """A header or code that no robot may run; `at` is the offset of the op."""
+
+    def __init__(self, text: str, at: int = 0) -> None:
+        super().__init__(text)
+        self.at = at
+
+
+def fire(mask: int, duty_permille: int, time_ms: int, cutoff_decidegc: int = 0) -> bytes:
+    """Heat these coils for that long, or until the estimate reaches the cut-off (0: none); does not wait."""
+    return _op(FIRE, (mask, 4), (duty_permille, 2), (time_ms, 2), (cutoff_decidegc, 2))
+
+
+def ramp(mask: int, duty_permille: int, time_ms: int, cutoff_decidegc: int, ramp_ms: int) -> bytes:
+    """As `fire`, but the duty rises from 0 to its value within `ramp_ms`."""
+    return _op(RAMP, (mask, 4), (duty_permille, 2), (time_ms, 2), (cutoff_decidegc, 2), (ramp_ms, 2))
+
+
+def delay(time_ms: int) -> bytes:
+    """Go on after that long."""
+    return _op(DELAY, (time_ms, 4))
+
+
+def repeat(count: int) -> bytes:
+    """Begin a body that runs `count` times, up to the matching `next`."""
+    return _op(REPEAT, (count, 2))
+
+
+def next_() -> bytes:
+    """End the body of the innermost `repeat`."""
+    return _op(NEXT)
+
+
+def wait(condition: Condition, timeout_ms: int, otherwise: int) -> bytes:
+    """Go on when the condition holds; after the time-out ABORT the program or CONTINUE."""
+    return _op(WAIT) + _condition(condition) + timeout_ms.to_bytes(4, "little") + bytes((otherwise,))
+
+
+def guard(condition: Condition) -> bytes:
+    """From here on, trip as soon as the condition holds."""
+    return _op(GUARD) + _condition(condition)
+
+
+def step(number: int) -> bytes:
+    """Name the step that begins here, for events and reports."""
+    return _op(STEP, (number, 2))
+
+
+def off(mask: int) -> bytes:
+    """Switch these coils off."""
+    return _op(OFF, (mask, 4))
+
+
+def halt() -> bytes:
+    """End the program once every coil it fired has ended."""
+    return _op(HALT)
+
+
+def header(code: bytes, robot_crc: int, flags: int = 0) -> bytes:
+    """Return the header of `code` for the robot whose profile has that CRC-32."""
+    numbers = (robot_crc, len(code), crc32(code))
+    return b"SG" + bytes((FORMAT, flags)) + b"".join([number.to_bytes(4, "little") for number in numbers])
+
+
+def read_header(data: bytes) -> Header:
+    """Return the header's fields, or raise BadProgram."""
+    if len(data) != HEADER_BYTES or data[:2] != b"SG":
+        raise BadProgram("not a program header")
+    if data[2] != FORMAT:
+        raise BadProgram(f"program format {data[2]}, this robot reads {FORMAT}")
+    return Header(data[3], number(data, 4, 4), number(data, 8, 4), number(data, 12, 4))
+
+
+def number(code: bytes, at: int, size: int) -> int:
+    """Return the little-endian unsigned number of `size` bytes at `at`."""
+    value = 0
+    for i in range(size - 1, -1, -1):
+        value = value << 8 | code[at + i]
+    return value
+
+
+def read_condition(code: bytes, at: int) -> Condition:
+    """Return the condition that stands at `at`."""
+    value = number(code, at + 2, 2)
+    value = value - 0x10000 if value & 0x8000 else value
+    return Condition(code[at], code[at + 1] & 15, code[at + 1] >> 4, value, number(code, at + 4, 4))
+
+
+def check_code(code: bytes, channels: int, bytes_max: int) -> None:
+    """Raise BadProgram unless every op is whole and known, loops nest, and the code ends with HALT.
+
+    Limits of duty and time are not looked at here: the channels hold every order against them as it runs.
+    """
+    if not 0 < len(code) <= bytes_max:
+        raise BadProgram(f"{len(code)} bytes of code, at most {bytes_max}")
+    at = depth = guards = 0
+    op = HALT
+    while at < len(code):
+        op = code[at]
+        if op >= len(SIZES) or at + SIZES[op] > len(code):
+            raise BadProgram(f"op {op} unknown or cut short", at)
+        depth += (op == REPEAT) - (op == NEXT)
+        guards += op == GUARD
+        if depth < 0 or depth > DEPTH_MAX:
+            raise BadProgram(f"loops nested {depth} deep, at most {DEPTH_MAX}", at)
+        _check_arguments(code, at, channels)
+        at += SIZES[op]
+    if op != HALT or depth or guards > GUARDS_MAX:
+        raise BadProgram(f"needs a halt at its end, closed loops and at most {GUARDS_MAX} guards", at)
+
+
+def disassemble(code: bytes) -> list[tuple]:
+    """Return (offset, name, arguments...) of each op of a code that `check_code` takes."""
+    rows = []
+    at = 0
+    while at < len(code):
+        rows.append((at, NAMES[code[at]]) + _arguments(code, at))
+        at += SIZES[code[at]]
+    return rows
+
+
+def _arguments(code: bytes, at: int) -> tuple:
+    op = code[at]
+    if op in (FIRE, RAMP):
+        order = (number(code, at + 1, 4), number(code, at + 5, 2), number(code, at + 7, 2), number(code, at + 9, 2))
+        return order + ((number(code, at + 11, 2),) if op == RAMP else ())
+    if op == WAIT:
+        return (read_condition(code, at + 1), number(code, at + 9, 4), code[at + 13])
+    if op == GUARD:
+        return (read_condition(code, at + 1),)
+    return () if SIZES[op] == 1 else (number(code, at + 1, SIZES[op] - 1),)
+
+
+def _check_arguments(code: bytes, at: int, channels: int) -> None:
+    op = code[at]
+    if op in (FIRE, RAMP, OFF) and not 0 < number(code, at + 1, 4) < 1 << channels:
+        raise BadProgram(f"coils {number(code, at + 1, 4):#x}, this robot has {channels}", at)
+    if op in (FIRE, RAMP) and number(code, at + 5, 2) > 1000:
+        raise BadProgram(f"duty {number(code, at + 5, 2)} permille, at most 1000", at)
+    if op == REPEAT and number(code, at + 1, 2) == 0:
+        raise BadProgram("a loop of no turns", at)
+    if op in (WAIT, GUARD):
+        _check_condition(read_condition(code, at + 1), channels, at)
+    if op == WAIT and code[at + 13] not in (ABORT, CONTINUE):
+        raise BadProgram(f"a wait that ends in {code[at + 13]}", at)
+
+
+def _check_condition(condition: Condition, channels: int, at: int) -> None:
+    known = TEMPERATURE <= condition.source <= BOARD and condition.quantifier <= ALL and condition.compare <= ABOVE
+    if not known:
+        raise BadProgram("a condition this robot does not know", at)
+    if condition.source == TEMPERATURE and not 0 < condition.mask < 1 << channels:
+        raise BadProgram(f"coils {condition.mask:#x}, this robot has {channels}", at)
+
+
+def _condition(condition: Condition) -> bytes:
+    head = bytes((condition.source, condition.quantifier | condition.compare << 4))
+    return head + (condition.value & 0xFFFF).to_bytes(2, "little") + condition.mask.to_bytes(4, "little")
+
+
+def _op(op: int, *arguments) -> bytes:
+    return bytes((op,)) + b"".join([value.to_bytes(size, "little") for value, size in arguments])
