@@ -1,0 +1,122 @@
+r"""What a set of shape-memory coils is made of, and the state each of them is in.
+
+`CoilNumbers` holds the material and the winding of one kind of coil; `coils_of` turns it into the arrays that the kernels read:
+
+.. math::  k = \frac{G d^4}{8 D^3 n}, \quad L_A = n d, \quad \Delta L = \frac{\pi D^2 n \gamma}{d}, \quad L_s = (n + 1) d    (C1)
+
+.. math::  c_F = \frac{\pi d^3}{8 D} \, c_\tau, \quad m = \rho \frac{\pi d^2}{4} L_w, \quad L_w = \pi D n                (C2)
+
+.. math::  R_A = \rho_A L_w / A_w, \quad R_M = \rho_M L_w / A_w, \quad A_w = \pi d^2 / 4                                  (C3)
+
+Sources: spring and shear stress of a helical coil, standard result; transformation stretch and stress shift derived from the coil
+measured by Kolyvas et al., JIMSS 2018; wire figures from the Flexinol sheets. Temperatures are in degrees Celsius throughout: only
+differences occur, there is no radiation term. ASSUMED: the wire is as long as its closed winding, L_w = pi D n.
+Checked in tests/test_physics_coil_spring.py and tests/test_physics_coil_heat.py.
+"""
+
+from dataclasses import dataclass
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from hil_sim.physics.kernel import FloatArray
+
+
+@dataclass(frozen=True)
+class CoilNumbers:
+    """One kind of coil, in SI units: winding, mechanics, phase change, heat and resistance."""
+
+    d: float  # wire diameter [m]
+    D: float  # mean diameter of the winding [m]
+    n: float  # active turns [1]
+    G_A: float  # shear modulus, austenite [Pa]
+    G_M: float  # shear modulus, martensite (secant) [Pa]
+    gamma: float  # transformation shear strain [1]
+    k_s: float  # stiffness of the closed winding, one-sided [N/m]
+    A_s: float  # austenite begins on heating, unloaded [degC]
+    A_f: float  # austenite complete [degC]
+    M_s: float  # martensite begins on cooling [degC]
+    M_f: float  # martensite complete [degC]
+    c_tau: float  # shear stress that shifts them by one kelvin [Pa/K]
+    rho: float  # density [kg/m3]
+    c: float  # specific heat [J/(kg K)]
+    H: float  # latent heat of the phase change [J/kg]
+    h: float  # heat transfer coefficient on the wire surface [W/(m2 K)]
+    rho_A: float  # resistivity, austenite [ohm m]
+    rho_M: float  # resistivity, martensite [ohm m]
+    k_e: float  # relative rise of resistance per unit of shear strain [1]
+
+    @property
+    def L_w(self) -> float:
+        """Length of wire in the winding [m]."""
+        return pi * self.D * self.n
+
+    @property
+    def m(self) -> float:
+        """Mass of the wire [kg], equation (C2)."""
+        return self.rho * 0.25 * pi * self.d**2 * self.L_w
+
+
+class Coils(NamedTuple):
+    """The constants of n coils as arrays (n,), SI units, read by the kernels."""
+
+    k_A: FloatArray  # spring rate, austenite [N/m]
+    k_M: FloatArray  # spring rate, martensite [N/m]
+    L_A: FloatArray  # length without load, austenite [m]
+    dL: FloatArray  # transformation stretch [m]
+    L_s: FloatArray  # solid height [m]
+    k_s: FloatArray  # stiffness below the solid height [N/m]
+    c_F: FloatArray  # force that shifts the transformation by one kelvin [N/K]
+    A_s: FloatArray  # [degC]
+    A_f: FloatArray  # [degC]
+    M_s: FloatArray  # [degC]
+    M_f: FloatArray  # [degC]
+    C: FloatArray  # heat capacity m c [J/K]
+    Q: FloatArray  # latent heat m H [J]
+    hA: FloatArray  # heat loss [W/K]
+    T_amb: FloatArray  # temperature of the air [degC]
+    R_A: FloatArray  # resistance, austenite, not stretched [ohm]
+    R_M: FloatArray  # resistance, martensite, not stretched [ohm]
+    k_R: FloatArray  # relative rise of resistance per metre of stretch [1/m]
+
+
+class CoilState(NamedTuple):
+    """The state of n coils as arrays (n,), SI units, changed in place by `coil.advance`."""
+
+    T: FloatArray  # temperature [degC]
+    xi: FloatArray  # martensite fraction, 1 cold .. 0 hot [1]
+    L: FloatArray  # length at the last step [m]
+    F: FloatArray  # force at the last step, positive when the coil pulls [N]
+    R: FloatArray  # resistance [ohm]
+    E_in: FloatArray  # electrical energy taken up since the start [J]
+    E_lost: FloatArray  # heat given to the air since the start [J]
+    W: FloatArray  # work done on the body since the start [J]
+
+
+def coils_of(numbers: CoilNumbers, count: int, T_amb: float = 25.0) -> Coils:
+    """Return the constants of `count` coils of one kind in air of `T_amb` [degC], equations (C1) to (C3)."""
+    p = numbers
+    rate = p.d**4 / (8 * p.D**3 * p.n)
+    stretch = pi * p.D**2 * p.n / p.d
+    area = 0.25 * pi * p.d**2
+    values = {
+        "k_A": p.G_A * rate, "k_M": p.G_M * rate, "L_A": p.n * p.d, "dL": p.gamma * stretch,
+        "L_s": (p.n + 1) * p.d, "k_s": p.k_s, "c_F": pi * p.d**3 / (8 * p.D) * p.c_tau,
+        "A_s": p.A_s, "A_f": p.A_f, "M_s": p.M_s, "M_f": p.M_f,
+        "C": p.m * p.c, "Q": p.m * p.H, "hA": p.h * pi * p.d * p.L_w, "T_amb": T_amb,
+        "R_A": p.rho_A * p.L_w / area, "R_M": p.rho_M * p.L_w / area, "k_R": p.k_e / stretch,
+    }  # fmt: skip
+    return Coils(**{name: np.full(count, value) for name, value in values.items()})
+
+
+def joined(*sets: Coils) -> Coils:
+    """Return one set of coils that holds those of all `sets` in their order."""
+    return Coils(*(np.concatenate(columns) for columns in zip(*sets, strict=True)))
+
+
+def cold(coils: Coils, L: FloatArray) -> CoilState:
+    """Return the state of coils that have lain at ambient temperature at the lengths `L` [m], all martensite."""
+    count = coils.T_amb.size
+    zeros = [np.zeros(count) for _ in range(5)]
+    return CoilState(coils.T_amb.copy(), np.ones(count), np.array(L, dtype=float), *zeros)
