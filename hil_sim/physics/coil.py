@@ -1,20 +1,21 @@
 r"""Heat, phase, force and resistance of shape-memory coils under electrical power.
 
-.. math::  m c \, \dot T = P - hA (T - T_{amb}) + m H \, \dot \xi                                                     (H1)
+.. math::  m c \, \dot T = P - hA (T - T_{amb}) + m H \, \dot \xi                                                 (H1)
 
-Over one step of length dt the power and the rate of transformation count as constant, for which (H1) has the exact solution
+Over one step of length dt the power and the rate of transformation count as constant, for which (H1) has the exact
+solution
 
 .. math::  T_1 = T_\infty + (T_0 - T_\infty) e^{-dt/\tau}, \quad
-           T_\infty = T_{amb} + \frac{P + m H (\xi_1 - \xi_0)/dt}{hA}, \quad \tau = \frac{m c}{hA}                    (H2)
+           T_\infty = T_{amb} + \frac{P + m H (\xi_1 - \xi_0)/dt}{hA}, \quad \tau = \frac{m c}{hA}                (H2)
 
 and the fraction xi_1 is found together with T_1 (`phase.settle`). The energies of the step close to rounding:
 
-.. math::  P \, dt = m c (T_1 - T_0) + m H (\xi_0 - \xi_1) + \int hA (T - T_{amb}) \, dt                              (H3)
+.. math::  P \, dt = m c (T_1 - T_0) + m H (\xi_0 - \xi_1) + \int hA (T - T_{amb}) \, dt                          (H3)
 
-The work on the body, W = -∫ F dL, is kept beside the balance. ASSUMED: it does not cool the wire (some 1 mJ of 270 mJ a stroke).
-ASSUMED: the wire is equally warm throughout (Biot number about 1e-3) and hA does not depend on pitch or temperature, which makes
-coils hotter than Morgan's correlation above about 120 degC. Steps of 1 ms are fine; the phase lags by about 0.3 K in a body that
-yields between steps. Checked in tests/test_physics_coil_heat.py, example:
+The work on the body, W = -∫ F dL, is kept beside the balance. ASSUMED: it does not cool the wire (some 1 mJ of 270 mJ
+a stroke). ASSUMED: the wire is equally warm throughout (Biot number about 1e-3) and hA does not depend on pitch or
+temperature, which makes coils hotter than Morgan's correlation above about 120 degC. Steps of 1 ms are fine; the
+phase lags by about 0.3 K in a body that yields between steps. Checked in tests/test_physics_coil_heat.py, example:
 
     coils = coils_of(numbers, 8)
     state = cold(coils, lengths)

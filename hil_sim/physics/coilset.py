@@ -1,17 +1,19 @@
 r"""What a set of shape-memory coils is made of, and the state each of them is in.
 
-`CoilNumbers` holds the material and the winding of one kind of coil; `coils_of` turns it into the arrays that the kernels read:
+`CoilNumbers` holds the material and the winding of one kind of coil; `coils_of` turns it into the arrays that the
+kernels read:
 
-.. math::  k = \frac{G d^4}{8 D^3 n}, \quad L_A = n d, \quad \Delta L = \frac{\pi D^2 n \gamma}{d}, \quad L_s = (n + 1) d    (C1)
+.. math::  k = \frac{G d^4}{8 D^3 n}, \quad \Delta L = \frac{\pi D^2 n \gamma}{d}, \quad L_A = n d, \quad
+           L_s = L_A + d                                                                                          (C1)
 
-.. math::  c_F = \frac{\pi d^3}{8 D} \, c_\tau, \quad m = \rho \frac{\pi d^2}{4} L_w, \quad L_w = \pi D n                (C2)
+.. math::  c_F = \frac{\pi d^3}{8 D} \, c_\tau, \quad m = \rho \frac{\pi d^2}{4} L_w, \quad L_w = \pi D n         (C2)
 
-.. math::  R_A = \rho_A L_w / A_w, \quad R_M = \rho_M L_w / A_w, \quad A_w = \pi d^2 / 4                                  (C3)
+.. math::  R_A = \rho_A L_w / A_w, \quad R_M = \rho_M L_w / A_w, \quad A_w = \pi d^2 / 4                          (C3)
 
-Sources: spring and shear stress of a helical coil, standard result; transformation stretch and stress shift derived from the coil
-measured by Kolyvas et al., JIMSS 2018; wire figures from the Flexinol sheets. Temperatures are in degrees Celsius throughout: only
-differences occur, there is no radiation term. ASSUMED: the wire is as long as its closed winding, L_w = pi D n.
-Checked in tests/test_physics_coil_spring.py and tests/test_physics_coil_heat.py.
+Sources: spring and shear stress of a helical coil, standard result; transformation stretch and stress shift derived
+from the coil measured by Kolyvas et al., JIMSS 2018; wire figures from the Flexinol sheets. Temperatures are in
+degrees Celsius throughout: only differences occur, there is no radiation term. ASSUMED: the wire is as long as its
+closed winding, L_w = pi D n. Checked in tests/test_physics_coil_spring.py and tests/test_physics_coil_heat.py.
 """
 
 from dataclasses import dataclass

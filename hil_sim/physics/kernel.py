@@ -1,7 +1,7 @@
 """Compile the inner loops of the physics once per machine.
 
-A kernel takes and changes arrays in place, allocates nothing and may call other kernels. The first call compiles it and keeps
-the result beside the source, so that later processes only load it:
+A kernel takes and changes arrays in place, allocates nothing and may call other kernels. The first call compiles it
+and keeps the result beside the source, so that later processes only load it:
 
     @kernel
     def advance(state, dt, P, L, coils): ...

@@ -1,19 +1,20 @@
 r"""Martensite fraction of a shape-memory wire: the play operator between the two Liang-Rogers envelopes.
 
-.. math::  \xi \leftarrow \mathrm{clip}(\xi, \; g(s), \; h(s)), \quad s = T - F / c_F                                 (P1)
+.. math::  \xi \leftarrow \mathrm{clip}(\xi, \; g(s), \; h(s)), \quad s = T - F / c_F                             (P1)
 
 .. math::  h(s) = \tfrac12 \left[1 + \cos \pi \frac{s - A_s}{A_f - A_s}\right], \quad
-           g(s) = \tfrac12 \left[1 + \cos \pi \frac{s - M_f}{M_s - M_f}\right]                                        (P2)
+           g(s) = \tfrac12 \left[1 + \cos \pi \frac{s - M_f}{M_s - M_f}\right]                                    (P2)
 
-h (heating) and g (cooling) are 1 below and 0 above their ramps. Between them the fraction stands still, so minor loops are closed and
-a ripple of the temperature changes nothing. In a step of time the temperature and the force follow the fraction,
+h (heating) and g (cooling) are 1 below and 0 above their ramps. Between them the fraction stands still, so minor
+loops are closed and a ripple of the temperature changes nothing. In a step of time the temperature and the force
+follow the fraction,
 
-.. math::  T(\xi) = T_0 + B (\xi - \xi_0), \quad F = F(L, \xi)                                                        (P3)
+.. math::  T(\xi) = T_0 + B (\xi - \xi_0), \quad F = F(L, \xi)                                                    (P3)
 
-and (P1) is solved for the fraction at the end of the step. The residual grows strictly with the fraction, so there is exactly one
-solution and a bracketed Newton iteration always finds it. Sources: envelopes, Liang and Rogers as implemented in
-gabrielegilardi/FingerControl; play instead of their multiplicative minor loops, which ratchet. Valid for A_f > A_s >= M_s > M_f.
-Checked in tests/test_physics_coil_phase.py.
+and (P1) is solved for the fraction at the end of the step. The residual grows strictly with the fraction, so there is
+exactly one solution and a bracketed Newton iteration always finds it. Sources: envelopes, Liang and Rogers as
+implemented in gabrielegilardi/FingerControl; play instead of their multiplicative minor loops, which ratchet. Valid
+for A_f > A_s >= M_s > M_f. Checked in tests/test_physics_coil_phase.py.
 """
 
 from math import cos, pi, sin

@@ -1,14 +1,16 @@
 r"""Force of a shape-memory coil spring between two attachments, and its tangent.
 
-.. math::  F = k(\xi) \max(0, L - L_A - \xi \, \Delta L) - k_s \max(0, L_s - L), \quad k = k_A + \xi (k_M - k_A)   (S1)
+.. math::  F = k(\xi) \max(0, L - L_A - \xi \, \Delta L) - k_s \max(0, L_s - L), \quad k = k_A + \xi (k_M - k_A)  (S1)
 
-The coil pulls (F > 0), hangs slack (F = 0) or, pressed below its solid height `L_s = (n + 1) d`, pushes like a rod (F < 0). The
-tangent dF/dL is exact on each side of the two kinks. Source: two-state spring of the locomotion prototype; (S1) second term derived
-here, ASSUMED: a closed winding neither buckles nor rubs. Shear strain for the resistance: gamma = d (L - L_A)/(pi D^2 n).
+The coil pulls (F > 0), hangs slack (F = 0) or, pressed below its solid height `L_s = (n + 1) d`, pushes like a rod (F
+< 0). The tangent dF/dL is exact on each side of the two kinks. Source: two-state spring of the locomotion prototype;
+(S1) second term derived here, ASSUMED: a closed winding neither buckles nor rubs. Shear strain for the resistance:
+gamma = d (L - L_A)/(pi D^2 n).
 
-.. math::  R = [R_A + \xi (R_M - R_A)] \, [1 + k_R \max(0, L - L_A)]                                               (S2)
+.. math::  R = [R_A + \xi (R_M - R_A)] \, [1 + k_R \max(L - L_A, \xi \, \Delta L)]                                (S2)
 
-Source: resistance ratio 0.92 measured on BMX150 (scientific.net/MSF.978.421). Checked in tests/test_physics_coil_spring.py.
+Source: resistance ratio 0.92 measured on BMX150 (scientific.net/MSF.978.421). Checked in
+tests/test_physics_coil_spring.py.
 """
 
 from hil_sim.physics.coilset import Coils
@@ -98,5 +100,6 @@ def resistance(i: int, L: float, xi: float, coils: Coils) -> float:
     """
     # A slack coil hangs at its own length: only wire that is pulled beyond it is strained.
     free = coils.L_A[i] + xi * coils.dL[i]
-    x = max(L, free) - coils.L_A[i]
-    return (coils.R_A[i] + xi * (coils.R_M[i] - coils.R_A[i])) * (1.0 + coils.k_R[i] * max(0.0, x))
+    stretch: float = 1.0 + coils.k_R[i] * (max(L, free) - coils.L_A[i])
+    R: float = coils.R_A[i] + xi * (coils.R_M[i] - coils.R_A[i])
+    return R * stretch
