@@ -25,13 +25,13 @@ phase lags by about 0.3 K in a body that yields between steps. Checked in tests/
 from math import expm1
 
 from hil_sim.physics.coilset import Coils, CoilState
-from hil_sim.physics.kernel import FloatArray, kernel
+from hil_sim.physics.compiled import Array, kernel
 from hil_sim.physics.phase import settle
 from hil_sim.physics.spring import force_and_tangent, resistance
 
 
 @kernel
-def advance(state: CoilState, dt: float, P: FloatArray, L: FloatArray, coils: Coils) -> None:
+def advance(state: CoilState, dt: float, P: Array, L: Array, coils: Coils) -> None:
     r"""Advance all coils by one step at given power and length, equations (H1) to (H3); changes `state` in place.
 
     Parameters
@@ -65,7 +65,7 @@ def advance(state: CoilState, dt: float, P: FloatArray, L: FloatArray, coils: Co
 
 
 @kernel
-def measure(state: CoilState, L: FloatArray, coils: Coils) -> None:
+def measure(state: CoilState, L: Array, coils: Coils) -> None:
     r"""Bring force, work and resistance up to date with temperature, fraction and length; changes `state` in place.
 
     Parameters
@@ -85,7 +85,7 @@ def measure(state: CoilState, L: FloatArray, coils: Coils) -> None:
         state.R[i] = resistance(i, L[i], state.xi[i], coils)
 
 
-def stored(state: CoilState, coils: Coils) -> FloatArray:
+def stored(state: CoilState, coils: Coils) -> Array:
     r"""Return the sensible heat above ambient temperature, m c (T - T_amb).
 
     Parameters
@@ -103,7 +103,7 @@ def stored(state: CoilState, coils: Coils) -> FloatArray:
     return coils.C * (state.T - coils.T_amb)
 
 
-def latent(state: CoilState, coils: Coils) -> FloatArray:
+def latent(state: CoilState, coils: Coils) -> Array:
     r"""Return the latent heat taken up against full martensite, m H (1 - xi).
 
     Parameters

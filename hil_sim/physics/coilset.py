@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hil_sim.physics.kernel import FloatArray
+from hil_sim.physics.compiled import Array
 
 
 @dataclass(frozen=True)
@@ -63,37 +63,37 @@ class CoilNumbers:
 class Coils(NamedTuple):
     """The constants of n coils as arrays (n,), SI units, read by the kernels."""
 
-    k_A: FloatArray  # spring rate, austenite [N/m]
-    k_M: FloatArray  # spring rate, martensite [N/m]
-    L_A: FloatArray  # length without load, austenite [m]
-    dL: FloatArray  # transformation stretch [m]
-    L_s: FloatArray  # solid height [m]
-    k_s: FloatArray  # stiffness below the solid height [N/m]
-    c_F: FloatArray  # force that shifts the transformation by one kelvin [N/K]
-    A_s: FloatArray  # [degC]
-    A_f: FloatArray  # [degC]
-    M_s: FloatArray  # [degC]
-    M_f: FloatArray  # [degC]
-    C: FloatArray  # heat capacity m c [J/K]
-    Q: FloatArray  # latent heat m H [J]
-    hA: FloatArray  # heat loss [W/K]
-    T_amb: FloatArray  # temperature of the air [degC]
-    R_A: FloatArray  # resistance, austenite, not stretched [ohm]
-    R_M: FloatArray  # resistance, martensite, not stretched [ohm]
-    k_R: FloatArray  # relative rise of resistance per metre of stretch [1/m]
+    k_A: Array  # spring rate, austenite [N/m]
+    k_M: Array  # spring rate, martensite [N/m]
+    L_A: Array  # length without load, austenite [m]
+    dL: Array  # transformation stretch [m]
+    L_s: Array  # solid height [m]
+    k_s: Array  # stiffness below the solid height [N/m]
+    c_F: Array  # force that shifts the transformation by one kelvin [N/K]
+    A_s: Array  # [degC]
+    A_f: Array  # [degC]
+    M_s: Array  # [degC]
+    M_f: Array  # [degC]
+    C: Array  # heat capacity m c [J/K]
+    Q: Array  # latent heat m H [J]
+    hA: Array  # heat loss [W/K]
+    T_amb: Array  # temperature of the air [degC]
+    R_A: Array  # resistance, austenite, not stretched [ohm]
+    R_M: Array  # resistance, martensite, not stretched [ohm]
+    k_R: Array  # relative rise of resistance per metre of stretch [1/m]
 
 
 class CoilState(NamedTuple):
     """The state of n coils as arrays (n,), SI units, changed in place by `coil.advance`."""
 
-    T: FloatArray  # temperature [degC]
-    xi: FloatArray  # martensite fraction, 1 cold .. 0 hot [1]
-    L: FloatArray  # length at the last step [m]
-    F: FloatArray  # force at the last step, positive when the coil pulls [N]
-    R: FloatArray  # resistance [ohm]
-    E_in: FloatArray  # electrical energy taken up since the start [J]
-    E_lost: FloatArray  # heat given to the air since the start [J]
-    W: FloatArray  # work done on the body since the start [J]
+    T: Array  # temperature [degC]
+    xi: Array  # martensite fraction, 1 cold .. 0 hot [1]
+    L: Array  # length at the last step [m]
+    F: Array  # force at the last step, positive when the coil pulls [N]
+    R: Array  # resistance [ohm]
+    E_in: Array  # electrical energy taken up since the start [J]
+    E_lost: Array  # heat given to the air since the start [J]
+    W: Array  # work done on the body since the start [J]
 
 
 def coils_of(numbers: CoilNumbers, count: int, T_amb: float = 25.0) -> Coils:
@@ -117,7 +117,7 @@ def joined(*sets: Coils) -> Coils:
     return Coils(*(np.concatenate(columns) for columns in zip(*sets, strict=True)))
 
 
-def cold(coils: Coils, L: FloatArray) -> CoilState:
+def cold(coils: Coils, L: Array) -> CoilState:
     """Return the state of coils that have lain at ambient temperature at the lengths `L` [m], all martensite."""
     count = coils.T_amb.size
     zeros = [np.zeros(count) for _ in range(5)]

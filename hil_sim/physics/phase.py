@@ -20,7 +20,7 @@ for A_f > A_s >= M_s > M_f. Checked in tests/test_physics_coil_phase.py.
 from math import cos, pi, sin
 
 from hil_sim.physics.coilset import Coils
-from hil_sim.physics.kernel import kernel
+from hil_sim.physics.compiled import kernel
 from hil_sim.physics.spring import tension
 
 TOLERANCE = 1e-13  # of the fraction

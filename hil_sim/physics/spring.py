@@ -14,7 +14,7 @@ tests/test_physics_coil_spring.py.
 """
 
 from hil_sim.physics.coilset import Coils
-from hil_sim.physics.kernel import kernel
+from hil_sim.physics.compiled import kernel
 
 
 @kernel
