@@ -24,7 +24,7 @@ help:
 setup: $(READY)
 
 $(READY): pyproject.toml
-	@"$(PYTHON)" -c '$(AT_LEAST)' 2>/dev/null || { echo "softrig needs Python 3.11 or newer, found $$(python3 --version 2>&1);" \
+	@"$(PYTHON)" -c '$(AT_LEAST)' 2>/dev/null || { echo "softrig needs Python 3.11 or newer: '$(PYTHON)' is not (python3 here: $$(python3 --version 2>&1));" \
 	  "name another one: make setup PYTHON=python3.12" >&2; exit 1; }
 	@if command -v uv >/dev/null; then uv venv --quiet --allow-existing --seed --python "$$(command -v $(PYTHON))" .venv; \
 	else $(PYTHON) -m venv .venv; fi || { echo "$(PYTHON) could not make .venv: is its venv module installed?" \
