@@ -28,8 +28,9 @@ class GroundNumbers:
     slope: float  # rises in the direction of travel [rad]
     mu: float  # coefficient of friction [1]
     k_n: float  # normal stiffness of a node's contact [N/m]
-    zeta_n: float  # damping of a contact, share of critical [1]
+    c_n: float  # normal damping of a node's contact [N s/m]
     gravity: float  # [m/s2]
+    T_amb: float  # temperature of the air [degC]
 
 
 @dataclass(frozen=True)
