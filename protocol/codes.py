@@ -183,7 +183,7 @@ CODES = (
         "Charge or replace the supply; fire fewer at once.",
     ),
     Code(
-        CHIP, "F08", "I2C address",
+        CHIP, "F08", "",
         "A chip does not answer or has lost its settings.",
         "Coil supply switched off, latched.",
         "Check the wiring of the bus, then `softrig clear`.",

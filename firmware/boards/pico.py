@@ -1,0 +1,77 @@
+"""The Pico-class board: which pin is which, and the chips on its bus.
+
+Two PCA9685 drive the coils' low-side MOSFETs, an INA226 watches the common supply, a thermistor the board. The
+outputs are enabled only while the heartbeat pin keeps moving (a retriggerable monostable of 50 ms) and the
+emergency-stop loop is closed: a hung processor cannot hold a coil on.
+"""
+
+import time
+
+from machine import ADC, I2C, UART, WDT, Pin, unique_id
+
+from firmware.drivers.ina226 import Ina226
+from firmware.drivers.ntc import decidegc
+from firmware.drivers.pca9685 import Pca9685
+
+WATCHDOG_MS = 200
+BAUD = 115_200
+
+
+class Board:
+    """The hardware as the core sees it: a supply switch, a heartbeat, PWM outputs, sensors and a serial line."""
+
+    def __init__(self) -> None:
+        self._power = Pin(2, Pin.OUT, value=0)
+        self._heartbeat = Pin(3, Pin.OUT, value=0)
+        self._estop = Pin(6, Pin.IN, Pin.PULL_DOWN)
+        self._beat = 0
+        self._bus = I2C(0, scl=Pin(5), sda=Pin(4), freq=400_000)
+        self._uart = UART(0, baudrate=BAUD, tx=Pin(0), rx=Pin(1), txbuf=512, rxbuf=512)
+        self._thermistor = ADC(Pin(26))
+        self._watchdog = WDT(timeout=WATCHDOG_MS)
+
+    def pwm(self, address: int) -> Pca9685:
+        """Return the driver of the PWM chip at that address."""
+        return Pca9685(self._bus, address)
+
+    def monitor(self, shunt_mohm: int) -> Ina226:
+        """Return the driver of the monitor of the coil supply."""
+        return Ina226(self._bus, 0x40, shunt_mohm)
+
+    def power(self, on: bool) -> None:
+        """Switch the coil supply."""
+        self._power.value(1 if on else 0)
+
+    def beat(self) -> None:
+        """Move the heartbeat: outputs stay enabled for another 50 ms."""
+        self._beat = 1 - self._beat
+        self._heartbeat.value(self._beat)
+
+    def estop_closed(self) -> bool:
+        """Return whether the emergency-stop loop is closed."""
+        return self._estop.value() == 1
+
+    def board_decidegc(self) -> int:
+        """Return the board's temperature; far outside -40..150 C when the thermistor is open or shorted."""
+        return decidegc(self._thermistor.read_u16())
+
+    def read(self) -> bytes:
+        """Return the bytes that have arrived."""
+        return self._uart.read() or b""
+
+    def write(self, data: bytes) -> None:
+        """Send bytes to the host."""
+        if data:
+            self._uart.write(data)
+
+    def feed(self) -> None:
+        """Keep the watchdog quiet for another period."""
+        self._watchdog.feed()
+
+
+def boot_number() -> int:
+    """Return a number that names this start of the firmware."""
+    seed = 0
+    for byte in unique_id():
+        seed = (seed * 31 + byte) & 0xFFFFFFFF
+    return (seed ^ time.ticks_us()) & 0xFFFFFFFF

@@ -1,0 +1,157 @@
+"""The only code that energises a coil.
+
+Whatever is asked, no coil is on above its duty limit, longer than its order, beyond its cut-off, or without a rest
+after `on_max_ms`. Orders are checked whole before any of it is taken. Outputs are written only when they change.
+"""
+
+from array import array
+
+from protocol import codes
+
+
+class Refused(Exception):
+    """An order that breaks a limit; nothing was changed."""
+
+    def __init__(self, code: int, channel: int = 255, value: int = 0, limit: int = 0) -> None:
+        super().__init__(code)
+        self.code = code
+        self.channel = channel
+        self.value = value
+        self.limit = limit
+
+
+class Channels:
+    """The coils of one robot, driven through `outputs`, a list of (chip driver, output number)."""
+
+    def __init__(self, outputs: list, coil, at_once_max: int) -> None:
+        count = len(outputs)
+        self.count = count
+        self.on_mask = 0
+        self.duty_permille = array("H", [0] * count)
+        self.cut_off_mask = 0  # coils whose cut-off ended their order since the last `take_cut_offs`
+        self._outputs = outputs
+        self._coil = coil
+        self._at_once_max = at_once_max
+        self._target = array("H", [0] * count)
+        self._written = array("H", [0] * count)
+        self._end_ms = array("i", [0] * count)
+        self._cutoff_decidegc = array("H", [0] * count)
+        self._ramp_ms = array("H", [0] * count)
+        self._begin_ms = array("i", [0] * count)
+        self._since_ms = array("i", [0] * count)
+        self._rested_ms = array("i", [0] * count)
+
+    def fire(self, mask: int, duty_permille: int, hold_ms: int, now_ms: int, cutoff_decidegc: int = 0,
+             ramp_ms: int = 0) -> None:  # fmt: skip
+        """Drive these coils until now_ms + hold_ms, or raise Refused."""
+        self._check(mask, duty_permille, hold_ms, now_ms)
+        for channel in range(self.count):
+            if mask >> channel & 1:
+                self._order(channel, duty_permille, now_ms)
+                self._end_ms[channel] = now_ms + hold_ms
+                self._cutoff_decidegc[channel] = cutoff_decidegc
+                self._ramp_ms[channel] = ramp_ms
+
+    def off(self, mask: int, now_ms: int) -> None:
+        """Switch these coils off."""
+        for channel in range(self.count):
+            if (mask & self.on_mask) >> channel & 1:
+                self._end(channel, now_ms)
+
+    def all_off(self, now_ms: int) -> None:
+        """Switch every coil off."""
+        self.off(self.on_mask, now_ms)
+
+    def update(self, now_ms: int, temperature_millidegc: array) -> int:
+        """End what has run out, move ramps; return a channel that was on for too long, or -1."""
+        if not self.on_mask:
+            return -1
+        for channel in range(self.count):
+            if not self.on_mask >> channel & 1:
+                continue
+            cutoff = self._cutoff_decidegc[channel]
+            if now_ms - self._end_ms[channel] >= 0:
+                self._end(channel, now_ms)
+            elif cutoff and temperature_millidegc[channel] >= cutoff * 100:
+                self._end(channel, now_ms)
+                self.cut_off_mask |= 1 << channel
+            elif now_ms - self._since_ms[channel] > self._coil.on_max_ms:
+                return channel
+            else:
+                self.duty_permille[channel] = self._ramped(channel, now_ms)
+        return -1
+
+    def write(self) -> None:
+        """Bring the chips' outputs in line with the orders; OSError when a chip does not answer."""
+        for channel in range(self.count):
+            duty = self.duty_permille[channel]
+            if duty != self._written[channel]:
+                chip, output = self._outputs[channel]
+                chip.set(output, duty)
+                self._written[channel] = duty
+
+    def forget_written(self) -> None:
+        """Take all outputs as off: the chips were reset or switched off behind our back."""
+        for channel in range(self.count):
+            self._written[channel] = 0
+
+    def on_for_ms(self, channel: int, now_ms: int) -> int:
+        """Return for how long that coil has been on without a pause."""
+        return now_ms - self._since_ms[channel]
+
+    def _check(self, mask: int, duty_permille: int, hold_ms: int, now_ms: int) -> None:
+        if not 0 < mask < 1 << self.count:
+            raise Refused(codes.UNKNOWN_CHANNEL, 255, mask, (1 << self.count) - 1)
+        if duty_permille > self._coil.duty_max_permille:
+            raise Refused(codes.DUTY_LIMIT, _first(mask), duty_permille, self._coil.duty_max_permille)
+        if hold_ms > self._coil.hold_max_ms:
+            raise Refused(codes.HOLD_LIMIT, _first(mask), hold_ms, self._coil.hold_max_ms)
+        if duty_permille == 0:
+            return
+        at_once = _bits(mask | self.on_mask)
+        if at_once > self._at_once_max:
+            raise Refused(codes.AT_ONCE_LIMIT, _first(mask), at_once, self._at_once_max)
+        for channel in range(self.count):
+            left_ms = self._rested_ms[channel] - now_ms
+            if mask >> channel & 1 and not self.on_mask >> channel & 1 and left_ms > 0:
+                raise Refused(codes.RESTING, channel, left_ms, 0)
+
+    def _order(self, channel: int, duty_permille: int, now_ms: int) -> None:
+        if duty_permille == 0:
+            self._end(channel, now_ms)
+            return
+        if not self.on_mask >> channel & 1:
+            self._since_ms[channel] = now_ms
+            self.on_mask |= 1 << channel
+        self._target[channel] = duty_permille
+        self._begin_ms[channel] = now_ms
+        self.duty_permille[channel] = duty_permille
+
+    def _end(self, channel: int, now_ms: int) -> None:
+        if self.on_mask >> channel & 1 and now_ms - self._since_ms[channel] >= self._coil.on_max_ms:
+            self._rested_ms[channel] = now_ms + self._coil.rest_ms
+        self.on_mask &= ~(1 << channel)
+        self.duty_permille[channel] = 0
+        self._target[channel] = 0
+
+    def _ramped(self, channel: int, now_ms: int) -> int:
+        ramp_ms = self._ramp_ms[channel]
+        passed_ms = now_ms - self._begin_ms[channel]
+        if passed_ms >= ramp_ms:
+            return self._target[channel]
+        return self._target[channel] * passed_ms // ramp_ms
+
+
+def _bits(mask: int) -> int:
+    count = 0
+    while mask:
+        mask &= mask - 1
+        count += 1
+    return count
+
+
+def _first(mask: int) -> int:
+    channel = 0
+    while not mask >> channel & 1:
+        channel += 1
+    return channel

@@ -1,0 +1,72 @@
+"""Budgets and interlocks: whatever the orders say, these conditions switch every coil off.
+
+Checked on every control step, none of them can be turned off over the wire. Independent of this file stand each
+order's own end (channels), the lease (core) and the hardware behind the heartbeat (board).
+"""
+
+from protocol import codes
+
+SETTLE_MS = 100  # readings are averages: a condition must last this long before it is believed
+STRAY_MA = 25
+BOARD_MAX_DECIDEGC = 850
+BOARD_MIN_DECIDEGC = -200
+
+
+class Guard:
+    """Holds what is measured and estimated against the limits of the profile."""
+
+    def __init__(self, profile, sense, channels, board) -> None:
+        self.channel = 255  # of the fault that `check` returned last
+        self.value = 0
+        self._coil = profile.coil
+        self._supply = profile.supply
+        self._sense = sense
+        self._channels = channels
+        self._board = board
+        self._stray_since_ms = 0
+        self._low_since_ms = 0
+
+    def check(self, now_ms: int, powered: bool) -> int:
+        """Return the code of the fault that holds now, or 0; its channel and value stand in the attributes."""
+        sense = self._sense
+        self.channel = 255
+        self.value = 0
+        if not self._board.estop_closed():
+            return codes.ESTOP
+        if not BOARD_MIN_DECIDEGC <= sense.board_decidegc <= BOARD_MAX_DECIDEGC:
+            return self._fault(codes.SENSOR, sense.board_decidegc)
+        if self._stray(now_ms):
+            return self._fault(codes.STRAY_CURRENT, sense.current_ma)
+        if not powered:
+            return 0
+        if sense.current_ma > self._supply.current_max_ma:
+            return self._fault(codes.OVER_CURRENT, sense.current_ma)
+        if self._low(now_ms):
+            return self._fault(codes.SUPPLY_LOW, sense.supply_mv)
+        return self._heat()
+
+    def _heat(self) -> int:
+        if not self._channels.on_mask:
+            return 0
+        channel = self._sense.hottest()
+        if self._sense.temperature_millidegc[channel] > self._coil.trip_decidegc * 100:
+            return self._fault(codes.OVER_TEMPERATURE, self._sense.temperature_millidegc[channel] // 100, channel)
+        channel = self._sense.over_budget()
+        if channel >= 0 and self._channels.on_mask >> channel & 1:
+            return self._fault(codes.HEAT_BUDGET, self._sense.heat_uj[channel] // 1000, channel)
+        return 0
+
+    def _stray(self, now_ms: int) -> bool:
+        if self._channels.on_mask or self._sense.current_ma <= STRAY_MA:
+            self._stray_since_ms = now_ms
+        return now_ms - self._stray_since_ms > SETTLE_MS
+
+    def _low(self, now_ms: int) -> bool:
+        if self._sense.supply_mv >= self._supply.low_mv:
+            self._low_since_ms = now_ms
+        return now_ms - self._low_since_ms > SETTLE_MS
+
+    def _fault(self, code: int, value: int, channel: int = 255) -> int:
+        self.value = value
+        self.channel = channel
+        return code

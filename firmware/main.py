@@ -1,0 +1,46 @@
+"""The super-loop: hands the core its bytes and the time every 5 ms and writes what it hands back."""
+
+import time
+
+from machine import WDT_RESET, reset, reset_cause
+
+from firmware.boards import pico
+from firmware.core import Core
+from firmware.profile import Profile
+
+STEP_MS = 5
+
+
+def run() -> None:
+    """Serve for ever; any error switches the coils off and restarts the firmware."""
+    board = pico.Board()
+    try:
+        with open("robot.json", "rb") as file:
+            core = Core(board, Profile(file.read()), pico.boot_number(), reset_cause() == WDT_RESET)
+        loop(board, core)
+    finally:
+        board.power(False)
+    reset()
+
+
+def loop(board: pico.Board, core: Core) -> None:
+    """Step the core at its period; a step that comes late is counted, not caught up."""
+    now_ms = 0
+    last = time.ticks_ms()
+    due = last
+    while True:
+        board.write(core.step(now_ms, board.read()))
+        board.feed()
+        due = time.ticks_add(due, STEP_MS)
+        left = time.ticks_diff(due, time.ticks_ms())
+        if left > 0:
+            time.sleep_ms(left)
+        else:
+            core.overruns += 1
+            due = time.ticks_ms()
+        ticks = time.ticks_ms()
+        now_ms += time.ticks_diff(ticks, last)
+        last = ticks
+
+
+run()

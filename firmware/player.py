@@ -1,0 +1,163 @@
+"""The sequencer: runs an uploaded program, one bounded piece of it in each control step.
+
+Times are counted from the program's own cursor, not from the step that happens to serve them, so that a long script
+does not drift. Conditions are evaluated here, on every step; nothing waits for the host.
+"""
+
+from array import array
+
+from protocol import program
+
+OPS_PER_STEP = 32
+RUNNING, FINISHED, TIMED_OUT, GUARDED = 0, 1, 2, 3
+
+
+class Player:
+    """One program and where it stands."""
+
+    def __init__(self, channels, sense) -> None:
+        self.step = 0  # number the program gave the step that runs, 0: none yet
+        self.code = b""
+        self.outcome = FINISHED
+        self._channels = channels
+        self._sense = sense
+        self._at = 0
+        self._cursor_ms = 0
+        self._wait_until_ms = 0
+        self._waiting = False
+        self._depth = 0
+        self._loop_at = array("H", [0] * program.DEPTH_MAX)
+        self._loop_left = array("H", [0] * program.DEPTH_MAX)
+        self._guards = array("H", [0] * program.GUARDS_MAX)
+        self._guard_count = 0
+        self._acts = (
+            self._halt, self._fire, self._fire, self._delay, self._repeat,
+            self._next, self._wait, self._guard, self._name, self._off,
+        )  # fmt: skip
+
+    def load(self, code: bytes, now_ms: int) -> None:
+        """Stand at the beginning of a code that was checked."""
+        self.code = code
+        self.step = 0
+        self.outcome = RUNNING
+        self._at = 0
+        self._cursor_ms = now_ms
+        self._waiting = False
+        self._depth = 0
+        self._guard_count = 0
+
+    def run(self, now_ms: int) -> int:
+        """Go on as far as the time allows; return the outcome so far. Passes Refused on."""
+        self.outcome = GUARDED if self._guarded() else self._run_ops(now_ms)
+        return self.outcome
+
+    def _run_ops(self, now_ms: int) -> int:
+        for _ in range(OPS_PER_STEP):
+            if now_ms - self._cursor_ms < 0:
+                return RUNNING
+            outcome = self._acts[self.code[self._at]](now_ms)
+            if outcome >= 0:
+                return outcome
+        return RUNNING
+
+    def _halt(self, now_ms: int) -> int:
+        return RUNNING if self._channels.on_mask else FINISHED
+
+    def _fire(self, now_ms: int) -> int:
+        code, at = self.code, self._at
+        ramp_ms = program.number(code, at + 11, 2) if code[at] == program.RAMP else 0
+        self._channels.fire(
+            program.number(code, at + 1, 4),
+            program.number(code, at + 5, 2),
+            program.number(code, at + 7, 2),
+            self._cursor_ms,
+            program.number(code, at + 9, 2),
+            ramp_ms,
+        )
+        return self._go_on()
+
+    def _delay(self, now_ms: int) -> int:
+        self._cursor_ms += program.number(self.code, self._at + 1, 4)
+        return self._go_on()
+
+    def _repeat(self, now_ms: int) -> int:
+        self._loop_left[self._depth] = program.number(self.code, self._at + 1, 2)
+        self._go_on()
+        self._loop_at[self._depth] = self._at
+        self._depth += 1
+        return -1
+
+    def _next(self, now_ms: int) -> int:
+        loop = self._depth - 1
+        self._loop_left[loop] -= 1
+        if self._loop_left[loop]:
+            self._at = self._loop_at[loop]
+            return -1
+        self._depth = loop
+        return self._go_on()
+
+    def _wait(self, now_ms: int) -> int:
+        if not self._waiting:
+            self._waiting = True
+            self._wait_until_ms = self._cursor_ms + program.number(self.code, self._at + 9, 4)
+        met = self._holds(self._at + 1)
+        if not met and now_ms - self._wait_until_ms < 0:
+            return RUNNING
+        if not met and self.code[self._at + 13] == program.ABORT:
+            return TIMED_OUT
+        self._waiting = False
+        self._cursor_ms = now_ms
+        return self._go_on()
+
+    def _guard(self, now_ms: int) -> int:
+        self._guards[self._guard_count] = self._at + 1
+        self._guard_count += 1
+        return self._go_on()
+
+    def _name(self, now_ms: int) -> int:
+        self.step = program.number(self.code, self._at + 1, 2)
+        return self._go_on()
+
+    def _off(self, now_ms: int) -> int:
+        self._channels.off(program.number(self.code, self._at + 1, 4), now_ms)
+        return self._go_on()
+
+    def _go_on(self) -> int:
+        self._at += program.SIZES[self.code[self._at]]
+        return -1
+
+    def _guarded(self) -> bool:
+        for i in range(self._guard_count):
+            if self._holds(self._guards[i]):
+                return True
+        return False
+
+    def _holds(self, at: int) -> bool:
+        """Evaluate the condition that stands at `at`, without building it."""
+        code = self.code
+        source = code[at]
+        value = program.number(code, at + 2, 2)
+        value = value - 0x10000 if value & 0x8000 else value
+        above = code[at + 1] >> 4 == program.ABOVE
+        if source != program.TEMPERATURE:
+            return _compare(self._reading(source), value, above)
+        return self._any_or_all(program.number(code, at + 4, 4), value, above, code[at + 1] & 15 == program.ALL)
+
+    def _any_or_all(self, mask: int, value: int, above: bool, want_all: bool) -> bool:
+        for channel in range(self._channels.count):
+            if mask >> channel & 1:
+                holds = _compare(self._sense.temperature_millidegc[channel] // 100, value, above)
+                if holds != want_all:
+                    return holds
+        return want_all
+
+    def _reading(self, source: int) -> int:
+        if source == program.CURRENT:
+            return self._sense.current_ma
+        if source == program.VOLTAGE:
+            return self._sense.supply_mv
+        return self._sense.board_decidegc
+
+
+def _compare(reading: int, value: int, above: bool) -> bool:
+    return reading > value if above else reading < value

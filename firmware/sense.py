@@ -1,0 +1,121 @@
+"""What the firmware knows of the robot: supply, board, and an estimate of each coil's heat.
+
+A coil's temperature is estimated from the power it is given: sensible heat, loss to the air and the latent heat of
+its phase change between fixed temperatures (stress moves them on the real coil; the energy is the same). The heat
+budget is the energy taken, leaking away with its own time constant. All integers: mK, uW, nJ, ms.
+"""
+
+from array import array
+
+
+class Sense:
+    """Readings of the chips and the estimate for every coil."""
+
+    def __init__(self, board, monitor, count: int, profile) -> None:
+        self.supply_mv = 0
+        self.current_ma = 0
+        self.board_decidegc = 250
+        self.temperature_millidegc = array("i", [25_000] * count)
+        self.heat_uj = array("i", [0] * count)
+        self._martensite_permille = array("i", [1000] * count)
+        self._rest_nj = array("i", [0] * count)
+        self._seen_ms = array("i", [0] * count)
+        self._board = board
+        self._monitor = monitor
+        self._coil = profile.coil
+        self._count = count
+        self._turn = 0
+        self._full_uw = 0
+
+    def read(self) -> None:
+        """Read one sensor in its turn; OSError when the monitor does not answer."""
+        self._turn = (self._turn + 1) & 63
+        if self._turn & 1:
+            self.current_ma = self._monitor.current_ma()
+        elif self._turn == 0:
+            self.board_decidegc = self._board.board_decidegc()
+        elif self._turn & 2:
+            self._read_supply()
+
+    def begin(self, now_ms: int) -> None:
+        """Read everything once and take all coils as being at the board's temperature."""
+        self.begin_supply()
+        for channel in range(self._count):
+            self.temperature_millidegc[channel] = self.board_decidegc * 100
+            self._seen_ms[channel] = now_ms
+
+    def begin_supply(self) -> None:
+        """Read every sensor now; OSError when the monitor does not answer."""
+        self.current_ma = self._monitor.current_ma()
+        self.board_decidegc = self._board.board_decidegc()
+        self._read_supply()
+
+    def update(self, now_ms: int, on_mask: int, duty_permille: array) -> None:
+        """Bring the estimates up to now: coils that are on at each step, the others in turn."""
+        turn = self._turn % self._count
+        for channel in range(self._count):
+            if on_mask >> channel & 1 or channel == turn:
+                passed_ms = now_ms - self._seen_ms[channel]
+                self._seen_ms[channel] = now_ms
+                self._heat(channel, self._full_uw * duty_permille[channel] // 1000, passed_ms)
+
+    def hottest(self) -> int:
+        """Return the channel with the highest estimate."""
+        best = 0
+        for channel in range(1, self._count):
+            if self.temperature_millidegc[channel] > self.temperature_millidegc[best]:
+                best = channel
+        return best
+
+    def over_budget(self) -> int:
+        """Return a channel that took more than its heat budget, or -1."""
+        limit_uj = self._coil.heat_budget_mj * 1000
+        for channel in range(self._count):
+            if self.heat_uj[channel] > limit_uj:
+                return channel
+        return -1
+
+    def _read_supply(self) -> None:
+        self.supply_mv = self._monitor.voltage_mv()
+        self._full_uw = full_power_uw(self.supply_mv, self._coil.resistance_mohm, self._coil.wiring_mohm)
+
+    def _heat(self, channel: int, power_uw: int, passed_ms: int) -> None:
+        """Move one estimate over `passed_ms` at constant power."""
+        coil = self._coil
+        heat_uj = self.heat_uj[channel]
+        heat_uj += power_uw * passed_ms // 1000 - heat_uj * passed_ms // coil.heat_leak_ms
+        self.heat_uj[channel] = heat_uj if heat_uj > 0 else 0
+        t = self.temperature_millidegc[channel]
+        loss_uw = (t // 100 - self.board_decidegc) * coil.loss_uw_per_k // 10
+        energy_nj = (power_uw - loss_uw) * passed_ms + self._rest_nj[channel]
+        capacity = coil.heat_capacity_uj_per_k + self._latent_uj_per_k(channel, t, energy_nj)
+        moved = energy_nj // capacity
+        self._rest_nj[channel] = energy_nj - moved * capacity
+        self.temperature_millidegc[channel] = t + moved
+        self._transform(channel, t + moved)
+
+    def _latent_uj_per_k(self, channel: int, t: int, energy_nj: int) -> int:
+        """Return the apparent heat capacity of the phase change where one is going on."""
+        coil = self._coil
+        martensite = self._martensite_permille[channel]
+        if energy_nj > 0 and coil.as_millidegc <= t < coil.af_millidegc and martensite > 0:
+            return coil.latent_uj * 1000 // (coil.af_millidegc - coil.as_millidegc)
+        if energy_nj < 0 and coil.mf_millidegc < t <= coil.ms_millidegc and martensite < 1000:
+            return coil.latent_uj * 1000 // (coil.ms_millidegc - coil.mf_millidegc)
+        return 0
+
+    def _transform(self, channel: int, t: int) -> None:
+        """Hold the martensite fraction between its heating and cooling lines."""
+        coil = self._coil
+        most = 1000 * (coil.af_millidegc - t) // (coil.af_millidegc - coil.as_millidegc)
+        least = 1000 * (coil.ms_millidegc - t) // (coil.ms_millidegc - coil.mf_millidegc)
+        martensite = self._martensite_permille[channel]
+        martensite = min(martensite, most)
+        martensite = max(martensite, least)
+        self._martensite_permille[channel] = 0 if martensite < 0 else 1000 if martensite > 1000 else martensite
+
+
+def full_power_uw(supply_mv: int, resistance_mohm: int, wiring_mohm: int) -> int:
+    """Return the power in a coil that is on all the time: I^2 R with I = U / (R + wiring)."""
+    current_ma = supply_mv * 1000 // (resistance_mohm + wiring_mohm)
+    return current_ma * current_ma // 100 * resistance_mohm // 10
