@@ -27,12 +27,20 @@ class Key:
         """Return section and key, as an override spells them."""
         return f"{self.section}.{self.key}"
 
+    @property
+    def range(self) -> str:
+        """Return what is allowed, in words."""
+        least = "above 0" if self.least == TINY else f"at least {self.least:g}"
+        return least if self.most == inf else f"{least} and at most {self.most:g}"
+
 
 UNITS = (
     "count", "deg", "degc", "g", "gpa", "j_per_kg_k", "k", "kg_per_m3", "kj_per_kg", "m_per_s2", "mm", "mpa_per_k",
-    "ms", "n", "n_m2", "n_per_m", "n_s_per_m", "ohm", "per_s", "ratio", "s", "uohm_m", "v", "w_per_m2_k",
+    "n", "n_m2", "n_per_m", "n_s_per_m", "ohm", "per_s", "ratio", "s", "uohm_m", "v", "w_per_m2_k",
+    # Not used above: so that a number in another unit is recognised, and for the derived section.
+    "cm", "kg", "m", "mg", "mohm", "mpa", "ms", "mv", "mw", "pa", "rad", "uj", "uj_per_k", "um", "uw_per_k",
 )  # fmt: skip
-"""The units a key may end in; a key that ends in none is told so."""
+"""The units a key may end in."""
 
 KEYS = (
     Key("shell", "radius_mm", "ring", "R", 1e-3, TINY),

@@ -1,0 +1,129 @@
+"""Robot files: the body of a robot as the bench builds it, read from TOML.
+
+    robot = load("circular", {"shell.mass_g": "2.0", "ground.slope_deg": "10"})
+    robot.ring.R, robot.coil.d, robot.labels, robot.wiring.outputs["A"]
+
+Each number stands in the file as its source prints it, `key_unit = [value, "standing: source"]`; here is the border
+behind which everything is SI. A file with an unknown or missing key, without a unit or without a standing is refused
+with all its mistakes, each as file:line and what to do. A lab's own robot is the path of such a file.
+"""
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hil_sim.physics.bodies import GroundNumbers, RingNumbers, StartNumbers
+from hil_sim.physics.coilset import CoilNumbers
+from hil_sim.robotcheck import Check, Entry, near
+from hil_sim.robotkeys import KEYS
+
+FOLDER = Path(__file__).parent / "robots"
+PROFILES = Path(__file__).parents[1] / "firmware" / "robots"
+
+
+class RobotFileError(ValueError):
+    """A robot file, its name or an override that cannot be used; the text has one line for each mistake."""
+
+
+@dataclass(frozen=True)
+class Wiring:
+    """The resistances between supply and coils, and where each coil is soldered."""
+
+    lead_ohm: float  # copper of one coil
+    switch_ohm: float  # MOSFET of one coil
+    source_ohm: float  # shared by all coils
+    supply_v: float
+    outputs: dict[str, tuple[int, int]]  # label: chip (I2C address), output
+
+    @property
+    def series_ohm(self) -> float:
+        """Return the resistance in series with each single coil."""
+        return self.lead_ohm + self.switch_ohm
+
+
+@dataclass(frozen=True)
+class Sensors:
+    """The parts around the chips that measure."""
+
+    shunt_ohm: float
+    ntc_ohm: float  # at 25 degC
+    ntc_beta_k: float
+    ntc_pull_up_ohm: float
+
+
+@dataclass(frozen=True)
+class RobotFile:
+    """A robot's body: SI numbers for the physics, labels and wiring for the netlist, entries for the reader."""
+
+    name: str
+    about: str
+    profile: Path
+    labels: tuple[str, ...]
+    ring: RingNumbers
+    coil: CoilNumbers
+    ground: GroundNumbers
+    start: StartNumbers
+    wiring: Wiring
+    sensors: Sensors
+    entries: tuple[Entry, ...]
+
+
+def names() -> list[str]:
+    """Return the names of the robots that come with the bench."""
+    return sorted(path.stem for path in FOLDER.glob("*.toml"))
+
+
+def load(robot: str, overrides: Mapping[str, str] | None = None) -> RobotFile:
+    """Read the robot of that name, or the file at that path; RobotFileError tells all that is wrong with it."""
+    path = find(robot)
+    text = path.read_text(encoding="utf-8")
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise RobotFileError(f"{path}: not TOML: {error}") from None
+    check = Check(path, text, data, overrides or {})
+    if check.mistakes:
+        raise RobotFileError("\n".join(check.mistakes))
+    return _robot(path, data, check.entries)
+
+
+def find(robot: str) -> Path:
+    """Return the path of a robot's file; RobotFileError when there is none."""
+    is_path = "/" in robot or robot.endswith(".toml")
+    path = Path(robot) if is_path else FOLDER / f"{robot}.toml"
+    if path.is_file():
+        return path
+    if is_path:
+        raise RobotFileError(f"{robot}: no such robot file")
+    known = names()
+    what = f"no robot {robot!r}{near(robot, known)}"
+    raise RobotFileError(f"{what}; known are {', '.join(known)}, or give the path of a robot file")
+
+
+def _robot(path: Path, data: dict[str, Any], entries: Mapping[str, Entry]) -> RobotFile:
+    """Return a file without mistakes in SI units."""
+    groups: dict[str, dict[str, Any]] = {}
+    for key in KEYS:
+        groups.setdefault(key.target, {})[key.field] = entries[key.name].value * key.si
+    groups["ring"]["nodes"] = int(groups["ring"]["nodes"])
+    outputs = {label: (chip, output) for label, (chip, output) in data["wiring"]["outputs"].items()}
+    return RobotFile(
+        name=path.stem,
+        about=data["about"],
+        profile=_profile(path, data["profile"]),
+        labels=tuple(data["coils"]["labels"]),
+        ring=RingNumbers(**groups["ring"]),
+        coil=CoilNumbers(**groups["coil"]),
+        ground=GroundNumbers(**groups["ground"]),
+        start=StartNumbers(**groups["start"]),
+        wiring=Wiring(outputs=outputs, **groups["wiring"]),
+        sensors=Sensors(**groups["sensors"]),
+        entries=tuple(entries.values()),
+    )
+
+
+def _profile(path: Path, name: str) -> Path:
+    """Return the path of the firmware profile: by name with the firmware, by file name beside the robot file."""
+    return path.parent / name if name.endswith(".json") else PROFILES / f"{name}.json"
