@@ -1,0 +1,52 @@
+"""A run as pictures and reports look back on it: the robot's telemetry and events, and what an observer saw.
+
+A scene is what the address's observer (the bench; a motion-capture system) says of one instant: `snapshot()` (hub, nodes
+and coils in the plane's own axes, mm and degrees Celsius), `observe()` under "observed" (travel_mm, ...) and the host's
+clock at that time. A real robot has no observer and its recording no scenes.
+
+    recording = Recording(robot.profile.labels, "circular-crawl.gait on sim:circular")
+    recording.note(record)                    # each Telemetry and Event
+    recording.look(link.observer, host_ms)    # beside each telemetry, where there is an observer
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from host.records import Event, Telemetry
+
+Scene = dict[str, Any]
+
+
+@dataclass(slots=True)
+class Recording:
+    """What was seen of one run; `labels` are the coils in the order of the telemetry."""
+
+    labels: tuple[str, ...]
+    title: str = ""
+    telemetry: list[Telemetry] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
+    scenes: list[Scene] = field(default_factory=list)
+
+    def note(self, record: object) -> None:
+        """Keep a record that pictures need; others are passed over."""
+        if isinstance(record, Telemetry):
+            self.telemetry.append(record)
+        elif isinstance(record, Event):
+            self.events.append(record)
+
+    def look(self, observer: Any, host_ms: int) -> None:
+        """Keep what `observer` sees now; nothing when there is none."""
+        if observer is not None:
+            self.scenes.append({**observer.snapshot(), "observed": observer.observe(), "host_ms": host_ms})
+
+    def start_ms(self) -> int:
+        """Return the host's clock when the program started, else when the record begins."""
+        started = [event.host_ms for event in self.events if event.event == "started"]
+        begun = [record.host_ms for record in self.telemetry] + [scene["host_ms"] for scene in self.scenes]
+        return started[0] if started else min(begun, default=0)
+
+    def seconds(self, host_ms: int) -> float:
+        """Return the time since the start in seconds."""
+        return (host_ms - self.start_ms()) / 1000
