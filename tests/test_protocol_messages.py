@@ -1,0 +1,49 @@
+"""The table of messages: what it packs, what it refuses, and the dictionary made from it."""
+
+import pytest
+
+from protocol import codes, messages
+
+
+def test_every_number_and_name_stands_once():
+    numbers = [message.number for message in messages.MESSAGES]
+    names = [message.name for message in messages.MESSAGES]
+
+    assert len(set(numbers)) == len(numbers)
+    assert len(set(names)) == len(names)
+
+
+def test_a_value_outside_its_field_is_refused_before_it_is_packed():
+    with pytest.raises(ValueError, match="duty_permille 65536, must be 0 to 65535"):
+        messages.FIRE.pack(coils=1, duty_permille=65536, hold_ms=1)
+
+
+def test_a_forgotten_field_is_named():
+    with pytest.raises(ValueError, match="fire needs hold_ms"):
+        messages.FIRE.pack(coils=1, duty_permille=1, hold=1)
+
+
+@pytest.mark.parametrize("payload", [b"", bytes(7), bytes(9)])
+def test_a_payload_of_the_wrong_length_is_refused(payload):
+    with pytest.raises(ValueError, match="fire: .* expected 8"):
+        messages.FIRE.unpack(payload)
+
+
+def test_a_last_field_of_text_takes_the_rest():
+    page = messages.DICTIONARY_PAGE.unpack(messages.DICTIONARY_PAGE.pack(offset=7, text=b"abc"))
+
+    assert (page.offset, page.text) == (7, b"abc")
+
+
+def test_the_dictionary_is_the_table_then_a_blank_line_then_the_profile():
+    table, profile = messages.dictionary(b'{"robot": "x"}').split(b"\n\n")
+
+    assert b"20 fire coils:I duty_permille:H hold_ms:H" in table.split(b"\n")
+    assert profile == b'{"robot": "x"}'
+
+
+def test_every_code_says_cause_deed_and_remedy_under_a_number_of_its_own():
+    assert len({row.number for row in codes.CODES}) == len({row.name for row in codes.CODES}) == len(codes.CODES)
+    assert all(row.cause and row.did and row.todo for row in codes.CODES)
+    assert codes.named("f05").number == codes.OVER_TEMPERATURE
+    assert codes.row(codes.STOP).name == "F01"

@@ -1,0 +1,83 @@
+"""Programs: frozen op-codes, and the verification that no device may skip."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from protocol import program
+from protocol.program import Condition
+
+CONDITION = Condition(program.TEMPERATURE, program.ALL, program.BELOW, 450, 0b11)
+OPS = [
+    (program.fire(0x01, 600, 700, 950), "01 01000000 5802 bc02 b603"),
+    (program.ramp(0x03, 300, 800, 0, 100), "02 03000000 2c01 2003 0000 6400"),
+    (program.delay(70_000), "03 70110100"),
+    (program.repeat(3), "04 0300"),
+    (program.next_(), "05"),
+    (program.wait(CONDITION, 20_000, program.ABORT), "06 01 01 c201 03000000 204e0000 00"),
+    (program.guard(Condition(program.CURRENT, 0, program.ABOVE, -2, 0)), "07 02 10 feff 00000000"),
+    (program.step(12), "08 0c00"),
+    (program.off(0x80), "09 80000000"),
+    (program.halt(), "00"),
+]
+
+
+@pytest.mark.parametrize(("op", "wire"), OPS, ids=[program.NAMES[op[0]] for op, _ in OPS])
+def test_the_bytes_of_an_op_are_frozen_and_as_long_as_the_table_says(op, wire):
+    assert op == bytes.fromhex(wire)
+    assert len(op) == program.SIZES[op[0]]
+
+
+def test_the_header_is_frozen_and_reads_back():
+    header = program.header(b"\x00", 0xAABBCCDD, program.OUTLIVES_HOST)
+
+    assert header == bytes.fromhex("5347 01 01 ddccbbaa 01000000 8def02d2")
+    assert program.read_header(header) == (program.OUTLIVES_HOST, 0xAABBCCDD, 1, 0xD202EF8D)
+
+
+def test_a_condition_reads_back_with_its_sign():
+    wait = program.wait(Condition(1, 0, 0, -400, 1), 1, 1)
+
+    assert program.read_condition(wait, 1).value == -400
+
+
+BAD = {
+    "nothing": (b"", "0 bytes of code"),
+    "no halt": (program.delay(1), "needs a halt"),
+    "cut short": (program.fire(1, 1, 1)[:-1], "cut short"),
+    "unknown op": (b"\x0a\x00", "op 10 unknown"),
+    "open loop": (program.repeat(2) + program.halt(), "closed loops"),
+    "next without repeat": (program.next_() + program.halt(), "nested -1"),
+    "nine loops deep": (program.repeat(1) * 9 + program.next_() * 9 + program.halt(), "nested 9"),
+    "no turns": (program.repeat(0) + program.next_() + program.halt(), "no turns"),
+    "no coil": (program.fire(0, 1, 1) + program.halt(), "coils 0x0"),
+    "unknown coil": (program.fire(1 << 8, 1, 1) + program.halt(), "coils 0x100"),
+    "duty above all": (program.fire(1, 1001, 1) + program.halt(), "duty 1001"),
+    "nine guards": (program.guard(CONDITION) * 9 + program.halt(), "at most 8 guards"),
+    "unknown source": (program.guard(Condition(5, 0, 0, 0, 1)) + program.halt(), "does not know"),
+    "unknown end of wait": (program.wait(CONDITION, 1, 2) + program.halt(), "ends in 2"),
+    "too long": (program.delay(1) * 30 + program.halt(), "at most 100"),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_a_bad_code_is_refused_and_says_why(name):
+    code, why = BAD[name]
+
+    with pytest.raises(program.BadProgram, match=why):
+        program.check_code(code, channels=8, bytes_max=100)
+
+
+@given(st.binary(max_size=100))
+def test_random_bytes_are_refused_or_can_be_taken_apart(code):
+    try:
+        program.check_code(code, channels=8, bytes_max=100)
+    except program.BadProgram:
+        return
+    assert program.disassemble(code)[-1][1] == "halt"
+
+
+@pytest.mark.parametrize("data", [b"", bytes(16), b"SG\x02" + bytes(13)])
+def test_a_foreign_header_is_refused(data):
+    with pytest.raises(program.BadProgram):
+        program.read_header(data)
