@@ -95,6 +95,13 @@ class Channels:
         for channel in range(self.count):
             self._written[channel] = 0
 
+    def busy(self, now_ms: int) -> bool:
+        """Return whether a coil has an order that goes on beyond now."""
+        for channel in range(self.count):
+            if self.on_mask >> channel & 1 and now_ms - self._end_ms[channel] < 0:
+                return True
+        return False
+
     def on_for_ms(self, channel: int, now_ms: int) -> int:
         """Return for how long that coil has been on without a pause."""
         return now_ms - self._since_ms[channel]

@@ -200,14 +200,15 @@ class Core:
 
     def _check_chips(self) -> None:
         """Look in turn whether a chip has lost its settings, as after a brown-out."""
-        self._turn = (self._turn + 1) % CHECK_EVERY
-        if self._turn or self.state == messages.TRIPPED:
+        self._turn += 1
+        if self._turn < CHECK_EVERY or self.state == messages.TRIPPED:
             return
         for chip in self._chips:
             if not chip.configured():
                 raise OSError(chip.address)
         if not self.monitor.configured():
             raise OSError(self.monitor.address)
+        self._turn = 0
 
     def _all_off(self) -> None:
         self.board.power(False)

@@ -61,7 +61,7 @@ class Player:
         return RUNNING
 
     def _halt(self, now_ms: int) -> int:
-        return RUNNING if self._channels.on_mask else FINISHED
+        return RUNNING if self._channels.busy(now_ms) else FINISHED
 
     def _fire(self, now_ms: int) -> int:
         code, at = self.code, self._at

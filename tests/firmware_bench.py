@@ -1,0 +1,160 @@
+"""A table top for the firmware alone: chips that remember, sensors that are set, a host made of frames.
+
+For tests of one firmware module in CPython. Whole-robot tests use the bench (`rig` in conftest.py) instead.
+"""
+
+from pathlib import Path
+
+from firmware.core import Core
+from firmware.profile import Profile
+from protocol import messages
+from protocol.link import Link
+
+PROFILE = Path(__file__).parent.parent / "firmware" / "robots" / "circular.json"
+SESSION = 77
+
+
+class Chip:
+    """A PWM chip that remembers what it was told, or does not answer."""
+
+    def __init__(self) -> None:
+        self.address = 0x60
+        self.duty_permille = [0] * 16
+        self.writes = 0
+        self.absent = False
+        self.lost = False
+
+    def begin(self) -> None:
+        self._reach()
+        self.lost = False
+        self.all_off()
+
+    def set(self, output: int, permille: int) -> None:
+        self._reach()
+        self.writes += 1
+        self.duty_permille[output] = permille
+
+    def all_off(self) -> None:
+        self._reach()
+        self.duty_permille = [0] * 16
+
+    def configured(self) -> bool:
+        self._reach()
+        return not self.lost
+
+    def _reach(self) -> None:
+        if self.absent:
+            raise OSError(5, "EIO")
+
+
+class Monitor:
+    """A supply monitor with the readings a test sets."""
+
+    address = 0x40
+
+    def __init__(self) -> None:
+        self.ma = 0
+        self.mv = 2000
+
+    def begin(self) -> None:
+        """Nothing to set."""
+
+    def configured(self) -> bool:
+        return True
+
+    def current_ma(self) -> int:
+        return self.ma
+
+    def voltage_mv(self) -> int:
+        return self.mv
+
+
+class Table:
+    """The board of the core under test."""
+
+    def __init__(self) -> None:
+        self.chip = Chip()
+        self.supply = Monitor()
+        self.powered = False
+        self.beats = 0
+        self.closed = True
+        self.decidegc = 250
+
+    def pwm(self, address: int) -> Chip:
+        return self.chip
+
+    def monitor(self, shunt_mohm: int) -> Monitor:
+        return self.supply
+
+    def power(self, on: bool) -> None:
+        self.powered = on
+
+    def beat(self) -> None:
+        self.beats += 1
+
+    def estop_closed(self) -> bool:
+        return self.closed
+
+    def board_decidegc(self) -> int:
+        return self.decidegc
+
+
+class Rig:
+    """A core on the table and a host that talks to it frame by frame, in steps of 5 ms."""
+
+    def __init__(self) -> None:
+        self.board = Table()
+        self.profile = Profile(PROFILE.read_bytes())
+        self.core = Core(self.board, self.profile, boot=1)
+        self.host = Link(self.core.link.decoder.seed)
+        self.got = []
+        self.now_ms = 0
+        self.say(messages.HELLO, version=1, session=SESSION)
+
+    def say(self, message, **fields):
+        """Send one message and return the answers of the next steps: a list of (message name, fields)."""
+        if message.number < 16:
+            self.host.post(message.number, message.pack(**fields))
+        else:
+            self.host.send(message.number, message.pack(**fields), self.now_ms)
+        return self.run(10)
+
+    def run(self, ms: int, silent: bool = False, line: bytes = b""):
+        """Let time pass; the host acknowledges and keeps the lease alive unless it is silent."""
+        fresh = []
+        for _ in range(0, ms, 5):
+            if not silent:
+                self.host.acknowledge()
+                line += self.host.poll(self.now_ms)
+            answer = self.core.step(self.now_ms, line)
+            line = b""
+            self.now_ms += 5
+            for received in self.host.receive(answer, self.now_ms):
+                message = messages.by_number(received.kind)
+                fresh.append((message.name, message.unpack(received.payload)))
+        self.got += fresh
+        return fresh
+
+    def arm(self, lease_ms: int = 0):
+        """Arm and return the answers."""
+        return self.say(messages.ARM, session=SESSION, lease_ms=lease_ms)
+
+    def fire(self, coils: int, duty_permille: int = 500, hold_ms: int = 1000):
+        """Fire and return the answers."""
+        return self.say(messages.FIRE, coils=coils, duty_permille=duty_permille, hold_ms=hold_ms)
+
+    def upload(self, code: bytes, header: bytes):
+        """Send a program; return all answers."""
+        answers = self.say(messages.PROGRAM, header=header)
+        for offset in range(0, len(code), 200):
+            answers += self.say(messages.CODE, offset=offset, code=code[offset : offset + 200])
+        return answers
+
+    def events(self, name: str):
+        """Return the events of that name that arrived so far."""
+        return [body for kind, body in self.got if kind == "event" and messages.EVENTS[body.event] == name]
+
+
+def refusal(answers):
+    """Return the refusal among answers."""
+    return next(body for name, body in answers if name == "refused")
