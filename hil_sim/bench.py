@@ -1,0 +1,177 @@
+"""The bench: core board, body and firmware in lock-step on one clock.
+
+The body is advanced on a fixed grid of 5 ms and whenever a gate changes, so what happens does not depend on who looks,
+how often, or how fast. The bench moves bytes and switches coils; it can read neither messages nor coil orders.
+
+    bench = Bench(parts, plant, image)
+    bench.run(seconds=2)
+    bench.coil_gate("A"), bench.coil("A").on_us(bench.clock.now_us)
+    bench.close()
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hil_sim.board import Board
+from hil_sim.clock import Clock
+from hil_sim.devices.ntc import Ntc
+from hil_sim.journal import Journal
+from hil_sim.record import CoilRecord
+from hil_sim.supply import Supply
+from hil_sim.worlds.cpython import CPythonWorld, Crash
+from hil_sim.worlds.image import Image
+
+GRID_US = 5_000
+FloatArray = NDArray[np.float64]
+
+
+class Plant(Protocol):
+    """The body: coils and what they move."""
+
+    labels: Sequence[str]
+    resistance: FloatArray
+    temperature: FloatArray
+
+    def advance(self, duration_us: int, coil_power_w: FloatArray) -> None:
+        """Let time pass with constant power in each coil."""
+
+    def observe(self) -> dict[str, Any]:
+        """Return what a motion capture system would."""
+
+    def snapshot(self) -> dict[str, Any]:
+        """Return the shape, for pictures."""
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The electrical parts around the chips, in the order of the plant's coils."""
+
+    outputs: Sequence[tuple[int, int]]  # PWM chip and output of each coil
+    series_ohm: Sequence[float]  # wiring and switch of each coil
+    source_ohm: float = 0.02  # shared by all coils, the shunt included
+    shunt_ohm: float = 0.02
+    supply_v: float = 2.0
+    ambient_degc: float = 25.0
+    ntc: Ntc | None = None
+
+
+class Bench:
+    """One robot on the bench, powered on at time 0."""
+
+    def __init__(
+        self,
+        parts: Parts,
+        plant: Plant,
+        image: Image,
+        *,
+        baud: int = 115_200,
+        identity: str = "softrig",
+        ticks_start_us: int = 0,
+        keep_journal: bool = False,
+    ) -> None:
+        self.clock = Clock()
+        self.journal = Journal(keep_journal)
+        self.plant = plant
+        self.supply = Supply(np.array(parts.series_ohm, float), parts.source_ohm, parts.shunt_ohm, parts.supply_v)
+        self.board = Board(self.clock, self.journal, self.supply, parts.outputs, parts.ntc or Ntc(), baud, identity)
+        self.board.degc = parts.ambient_degc
+        self.board.changed = self._gates_changed
+        self.coils = [CoilRecord(label) for label in plant.labels]
+        self.world = CPythonWorld(self.board, image, ticks_start_us)
+        self._by_label = {coil.label: coil for coil in self.coils}
+        self._advanced_us = 0
+        self._hot = False
+        self._peak_degc = plant.temperature.copy()
+        self._energy_j = np.zeros(len(self.coils))
+        self._solve()
+        self.clock.at(GRID_US, self._grid)
+        self.world.power_on()
+
+    def run(self, seconds: float) -> None:
+        """Let virtual time pass."""
+        self.clock.run_until(self.clock.now_us + round(seconds * 1e6))
+
+    def coil_gate(self, label: str) -> float:
+        """Return the share of the PWM period for which a coil is heated now."""
+        return self._by_label[label].duty
+
+    def coil(self, label: str) -> CoilRecord:
+        """Return what was done to a coil; its peak and energy as of the last grid point or change."""
+        record = self._by_label[label]
+        index = self.coils.index(record)
+        record.peak_degc = float(self._peak_degc[index])
+        record.energy_j = float(self._energy_j[index])
+        return record
+
+    @property
+    def any_coil_on(self) -> bool:
+        """Whether any coil is being heated."""
+        return self._hot
+
+    @property
+    def crashes(self) -> list[Crash]:
+        """What has escaped the firmware."""
+        return self.world.crashes
+
+    def trace_sha256(self) -> str:
+        """Return the hash over all that crossed the edge of a chip or came from outside."""
+        return self.journal.trace_sha256()
+
+    def observe(self) -> dict[str, Any]:
+        """Return what a motion capture system would see, and what was done to each coil."""
+        now_us = self.clock.now_us
+        coils = {coil.label: self.coil(coil.label) for coil in self.coils}
+        return {
+            **self.plant.observe(),
+            "t_s": now_us / 1e6,
+            "coil_on_s": {label: coil.on_us(now_us) / 1e6 for label, coil in coils.items()},
+            "coil_energy_j": {label: coil.energy_j for label, coil in coils.items()},
+            "coil_peak_degc": {label: coil.peak_degc for label, coil in coils.items()},
+            "firmware_resets": self.world.resets,
+            "firmware_crashes": [crash.error for crash in self.crashes],
+            "trace_sha256": self.trace_sha256(),
+        }
+
+    def snapshot(self) -> dict[str, Any]:
+        """Return the shape for pictures, with each coil's duty."""
+        seen = self.plant.snapshot()
+        coils: Mapping[str, dict[str, Any]] = seen["coils"]
+        for label, coil in coils.items():
+            coil["duty"] = self.coil_gate(label)
+        return seen
+
+    def close(self) -> None:
+        """End the firmware; a closed bench cannot be run again."""
+        self.world.close()
+
+    def _grid(self) -> None:
+        self._advance()
+        if self._hot:  # resistances have changed
+            self._solve()
+        self.clock.at(self.clock.now_us + GRID_US, self._grid)
+
+    def _gates_changed(self) -> None:
+        self._advance()
+        self._solve()
+        for coil, (_, width) in zip(self.coils, self.board.gates(), strict=True):
+            coil.switch(width, self.clock.now_us)
+        self._hot = any(coil.duty for coil in self.coils)
+
+    def _advance(self) -> None:
+        """Bring the body up to now with the powers that have held since the last time."""
+        duration_us = self.clock.now_us - self._advanced_us
+        if not duration_us:
+            return
+        self._advanced_us = self.clock.now_us
+        self.plant.advance(duration_us, self.supply.power_w)
+        if self._hot:
+            self._energy_j += self.supply.power_w * (duration_us * 1e-6)
+            np.maximum(self._peak_degc, self.plant.temperature, out=self._peak_degc)
+
+    def _solve(self) -> None:
+        self.board.monitor.catch_up()
+        self.supply.drive(self.board.gates(), self.board.pwm_period_us(), self.plant.resistance)

@@ -1,0 +1,119 @@
+"""The netlist of the core board: which pin, bus, chip and coil hang together.
+
+The outputs of both PWM chips drive only while the heartbeat keeps the monostable running and the emergency-stop loop
+is closed; the coils are fed only while PWR_EN is high. Both rest low, hence off, when the processor is reset; the
+chips keep their registers through that.
+
+    board = Board(clock, journal, supply, outputs=[(0x60, 0), (0x60, 1)], ntc=Ntc())
+    board.gates()  # what each coil is driven with
+"""
+
+import hashlib
+from collections.abc import Callable, Sequence
+
+from hil_sim.clock import Clock
+from hil_sim.devices.gpio import Gpio
+from hil_sim.devices.i2c import Bus
+from hil_sim.devices.ina226 import Ina226, Source
+from hil_sim.devices.monostable import Monostable
+from hil_sim.devices.ntc import Ntc
+from hil_sim.devices.pca9685 import Gate, Pca9685
+from hil_sim.devices.uart import Uart
+from hil_sim.journal import ADC, FAULT, RESET, UART_HEARD, Journal
+
+PWR_EN, HEARTBEAT, ESTOP_SENSE, ALERT = 2, 3, 6, 7
+SDA, SCL = 4, 5
+THERMISTOR_CHANNEL = 0
+HEARTBEAT_WINDOW_US = 50_000
+PWM_CHIPS = (0x60, 0x61)
+MONITOR = 0x40
+_OFF = (0.0, 0.0)
+
+
+class Board:
+    """Chips and wires around one processor. `changed` is called when the drive of any coil may have changed."""
+
+    def __init__(
+        self,
+        clock: Clock,
+        journal: Journal,
+        source: Source,
+        outputs: Sequence[tuple[int, int]],
+        ntc: Ntc,
+        baud: int = 115_200,
+        identity: str = "softrig",
+    ) -> None:
+        self.clock = clock
+        self.journal = journal
+        self.changed: Callable[[], None] = _nothing
+        self.degc = 25.0
+        self.powered = False
+        self.estop_closed = True
+        self.unique_id = hashlib.sha256(identity.encode()).digest()[:8]
+        self.pwm = {address: Pca9685(address, clock, self._on_change) for address in PWM_CHIPS}
+        self.monitor = Ina226(MONITOR, clock, source)
+        self.bus = Bus([*self.pwm.values(), self.monitor])
+        self.ntc = ntc
+        self.uart = Uart(baud)
+        self.monostable = Monostable(clock, HEARTBEAT_WINDOW_US, self._on_enable)
+        self.gpio = Gpio(clock, journal)
+        self.gpio.watchers[PWR_EN] = self._on_power
+        self.gpio.watchers[HEARTBEAT] = lambda _: self.monostable.edge()
+        self.gpio.sources[ESTOP_SENSE] = lambda: 1 if self.estop_closed else None
+        self.gpio.sources[ALERT] = self.monitor.alert_level
+        self._outputs = [(self.pwm[chip], output) for chip, output in outputs]
+
+    def gates(self) -> list[Gate]:
+        """Return what each coil is driven with: nothing while PWR_EN is low."""
+        if not self.powered:
+            return [_OFF] * len(self._outputs)
+        return [chip.outputs[output] for chip, output in self._outputs]
+
+    def pwm_period_us(self) -> float:
+        """Return the length of a PWM period."""
+        return self.pwm[PWM_CHIPS[0]].pwm_period_us
+
+    def convert(self, channel: int) -> int:
+        """Return the 12-bit result of an analogue input; an unconnected one reads 0."""
+        counts = self.ntc.counts(self.degc) if channel == THERMISTOR_CHANNEL else 0
+        self.journal.note(self.clock.now_us, ADC, channel, counts.to_bytes(2, "little"))
+        return counts
+
+    def reset_processor(self, cause: int) -> None:
+        """Reset the pins and the processor's own peripherals; the chips keep their state."""
+        self.journal.note(self.clock.now_us, RESET, cause, b"")
+        self.gpio.reset()
+        self.uart.close(self.clock.now_us)
+
+    def power_cycle(self) -> None:
+        """Take the board's own supply away and give it back: the chips forget, too."""
+        for chip in self.pwm.values():
+            chip.reset()
+        self.monitor.reset()
+
+    def host_write(self, data: bytes) -> None:
+        """Put bytes of the host on the serial line."""
+        self.journal.note(self.clock.now_us, UART_HEARD, 0, data)
+        self.uart.host_write(data, self.clock.now_us)
+
+    def set_estop(self, closed: bool) -> None:
+        """Close or open the emergency-stop loop."""
+        self.journal.note(self.clock.now_us, FAULT, ESTOP_SENSE, b"\x01" if closed else b"\x00")
+        self.estop_closed = closed
+        self._on_enable()
+
+    def _on_enable(self) -> None:
+        enable = self.monostable.running and self.estop_closed
+        for chip in self.pwm.values():
+            chip.enable(enable)
+
+    def _on_power(self, level: int) -> None:
+        self.powered = bool(level)
+        self._on_change()
+
+    def _on_change(self) -> None:
+        self.changed()
+
+
+def _nothing() -> None:
+    """What a board does about changed gates before a bench listens."""

@@ -1,0 +1,197 @@
+"""INA226: current and voltage of the common supply behind 16-bit registers, as the TI data sheet describes them.
+
+Conversions run by themselves at the configured times and averages, and each result is the mean of its own window. No
+event is needed for that: the chip works out what it would have converted when it is next asked, and once more
+(`catch_up`) before the supply changes. Conversions and PWM are not synchronous, so a short conversion of a pulsed
+current aliases, as on the real board.
+
+ASSUMED: with averaging, shunt and bus conversions alternate; results round to the nearest bit.
+"""
+
+from typing import Protocol
+
+from hil_sim.clock import Clock
+
+CONFIG, SHUNT, BUS, POWER, CURRENT, CALIBRATION, MASK, LIMIT, MAKER_ID, DIE_ID = (*range(8), 0xFE, 0xFF)
+RESET = 0x8000
+SHUNT_OVER, SHUNT_UNDER, BUS_OVER, BUS_UNDER, POWER_OVER, READY_ALERT = 0x8000, 0x4000, 0x2000, 0x1000, 0x800, 0x400
+ALERT_FLAG, READY_FLAG, OVERFLOW_FLAG, ALERT_HIGH, LATCH = 0x10, 0x08, 0x04, 0x02, 0x01
+SHUNT_LSB_V = 2.5e-6
+BUS_LSB_V = 1.25e-3
+CONVERSION_US = (140, 204, 332, 588, 1100, 2116, 4156, 8244)
+AVERAGES = (1, 4, 16, 64, 128, 256, 512, 1024)
+
+
+class Source(Protocol):
+    """What is on the chip's inputs."""
+
+    def steady_v(self) -> tuple[float, float] | None:
+        """Return the voltages across the shunt and at the bus pin, or None while they ripple."""
+
+    def integrals_vus(
+        self, begun_us: int, from_us: int, until_us: int, shunt_us: int, bus_us: int
+    ) -> tuple[float, float]:
+        """Return shunt and bus voltage integrated over those parts of from_us..until_us that belong to each.
+
+        Since begun_us, conversions of the shunt (shunt_us long) and of the bus (bus_us) take turns.
+        """
+
+
+class Ina226:
+    """One chip at `address` that measures `source`."""
+
+    def __init__(self, address: int, clock: Clock, source: Source) -> None:
+        self.address = address
+        self.alive = True
+        self._clock = clock
+        self._source = source
+        self.reset()
+
+    def reset(self) -> None:
+        """Return to the power-on state: calibration 0, so current and power read 0 until it is written."""
+        self.registers = dict.fromkeys(range(8), 0) | {CONFIG: 0x4127, MAKER_ID: 0x5449, DIE_ID: 0x2260}
+        self._pointer = 0
+        self._asserted = False
+        self._begin()
+
+    def catch_up(self) -> None:
+        """Convert up to now; to be called before the source changes, too."""
+        now_us = self._clock.now_us
+        while self._cycle_us and now_us - self._begun_us >= self._cycle_us:
+            self._integrate(self._begun_us + self._cycle_us)
+            self._finish()
+            self._skip(now_us)
+        if self._cycle_us and now_us > self._seen_us:
+            self._integrate(now_us)
+
+    def alert_level(self) -> int:
+        """Return the level of the open-drain alert pin with its pull-up: 0 while it alerts."""
+        self.catch_up()
+        return int(self._asserted == bool(self.registers[MASK] & ALERT_HIGH))
+
+    def answers(self, address: int) -> bool:
+        """Its own address only."""
+        return self.alive and address == self.address
+
+    def write(self, address: int, data: bytes) -> int:
+        """Take a register pointer and, where there are two more bytes, a value."""
+        self.catch_up()
+        if data:
+            self._pointer = data[0]
+        if len(data) >= 3:
+            self._store(data[0], data[1] << 8 | data[2])
+        return len(data)
+
+    def read(self, count: int) -> bytes:
+        """Return the register pointed at, high byte first, over and over."""
+        self.catch_up()
+        value = self.registers.get(self._pointer, 0)
+        if self._pointer == MASK:
+            self._acknowledge()
+        return (value.to_bytes(2, "big") * (count // 2 + 1))[:count]
+
+    def _store(self, register: int, value: int) -> None:
+        if register == CONFIG and value & RESET:
+            self.reset()
+        elif register == CONFIG:
+            self.registers[CONFIG] = value & 0x0FFF | 0x4000
+            self.registers[MASK] &= ~READY_FLAG
+            self._begin()
+        elif register == CALIBRATION:
+            self.registers[CALIBRATION] = value & 0x7FFF
+        elif register == MASK:
+            flags = ALERT_FLAG | READY_FLAG | OVERFLOW_FLAG
+            self.registers[MASK] = value & 0xFC03 | self.registers[MASK] & flags
+        elif register == LIMIT:
+            self.registers[LIMIT] = value
+
+    def _acknowledge(self) -> None:
+        self.registers[MASK] &= ~READY_FLAG
+        if self.registers[MASK] & (LATCH | READY_ALERT):
+            self.registers[MASK] &= ~ALERT_FLAG
+            self._asserted = False
+
+    def _begin(self) -> None:
+        """Start a conversion as CONFIG says."""
+        config = self.registers[CONFIG]
+        self._averages = AVERAGES[config >> 9 & 7]
+        self._shunt_us = CONVERSION_US[config >> 3 & 7] if config & 1 else 0
+        self._bus_us = CONVERSION_US[config >> 6 & 7] if config & 2 else 0
+        self._cycle_us = (self._shunt_us + self._bus_us) * self._averages
+        self._begun_us = self._seen_us = self._clock.now_us
+        self._shunt_sum = self._bus_sum = 0.0
+
+    def _skip(self, now_us: int) -> None:
+        """Leave out conversions whose results nobody can see: all but the last one before now."""
+        watched = self.registers[MASK] & 0xFC00
+        if self._cycle_us and not watched:
+            unseen = max(0, (now_us - self._begun_us) // self._cycle_us - 1)
+            self._begun_us = self._seen_us = self._begun_us + unseen * self._cycle_us
+
+    def _integrate(self, until_us: int) -> None:
+        """Add what has been on the inputs between the time last seen and `until_us` to the sums."""
+        steady = self._source.steady_v()
+        if steady is None:
+            shunt_vus, bus_vus = self._source.integrals_vus(
+                self._begun_us, self._seen_us, until_us, self._shunt_us, self._bus_us
+            )
+        else:
+            past_us, end_us = self._seen_us - self._begun_us, until_us - self._begun_us
+            shunt_us = self._shunt_time(end_us) - self._shunt_time(past_us)
+            shunt_vus, bus_vus = steady[0] * shunt_us, steady[1] * (end_us - past_us - shunt_us)
+        self._shunt_sum += shunt_vus
+        self._bus_sum += bus_vus
+        self._seen_us = until_us
+
+    def _shunt_time(self, elapsed_us: int) -> int:
+        """Return how much of the first `elapsed_us` of a cycle went into shunt conversions."""
+        turns, rest_us = divmod(elapsed_us, self._shunt_us + self._bus_us)
+        return turns * self._shunt_us + min(rest_us, self._shunt_us)
+
+    def _finish(self) -> None:
+        registers = self.registers
+        if self._shunt_us:
+            mean_v = self._shunt_sum / (self._shunt_us * self._averages)
+            shunt = max(-0x8000, min(0x7FFF, round(mean_v / SHUNT_LSB_V)))
+            registers[SHUNT] = shunt & 0xFFFF
+            current = int(shunt * registers[CALIBRATION] / 2048)
+            registers[CURRENT] = max(-0x8000, min(0x7FFF, current)) & 0xFFFF
+            overflow = OVERFLOW_FLAG if not -0x8000 <= current <= 0x7FFF else 0
+            registers[MASK] = registers[MASK] & ~OVERFLOW_FLAG | overflow
+        if self._bus_us:
+            mean_v = self._bus_sum / (self._bus_us * self._averages)
+            registers[BUS] = max(0, min(0x7FFF, round(mean_v / BUS_LSB_V)))
+        registers[POWER] = min(0xFFFF, abs(_signed(registers[CURRENT])) * registers[BUS] // 20_000)
+        registers[MASK] |= READY_FLAG
+        self._alert()
+        self._begun_us = self._seen_us
+        self._shunt_sum = self._bus_sum = 0.0
+        if not registers[CONFIG] & 4:
+            self._cycle_us = 0  # one shot
+
+    def _alert(self) -> None:
+        mask = self.registers[MASK]
+        if not mask & 0xFC00:
+            return
+        if self._beyond_limit(mask):
+            self.registers[MASK] |= ALERT_FLAG
+        elif not mask & LATCH:
+            self.registers[MASK] &= ~ALERT_FLAG
+        self._asserted = bool(self.registers[MASK] & ALERT_FLAG or mask & READY_ALERT)
+
+    def _beyond_limit(self, mask: int) -> bool:
+        """Return whether the one watched value, the highest bit where several are set, is beyond the limit."""
+        limit = self.registers[LIMIT]
+        shunt, bus = _signed(self.registers[SHUNT]), self.registers[BUS]
+        watched = (
+            (SHUNT_OVER, shunt > _signed(limit)),
+            (SHUNT_UNDER, shunt < _signed(limit)),
+            (BUS_OVER, bus > limit),
+            (BUS_UNDER, bus < limit),
+            (POWER_OVER, self.registers[POWER] > limit),
+        )
+        return next((beyond for bit, beyond in watched if mask & bit), False)
+
+
+def _signed(value: int) -> int:
+    return value - 0x10000 if value & 0x8000 else value

@@ -1,0 +1,168 @@
+"""A serial line at its real pace: ten bits a byte, one byte after the other, and buffers that end.
+
+Nothing happens per byte. A `Wire` knows when each byte will have arrived and hands over what has, to whoever looks;
+times are exact, because positions on the line are kept in bits and not in rounded microseconds.
+
+    wire = Wire(115_200)
+    wire.send(b"hello", now_us=0)
+    wire.take(now_us=200)  # two bytes: each needs 86.8 us
+"""
+
+from collections import deque
+from collections.abc import Callable
+
+BITS_PER_BYTE = 10  # start, eight, stop
+BUFFER_BYTES = 256
+_SECOND_US = 1_000_000
+
+
+class Wire:
+    """One direction of a line. Times are held as us * baud, in which a byte is a whole number."""
+
+    def __init__(self, baud: int) -> None:
+        self.baud = baud
+        self._runs: deque[tuple[int, bytes]] = deque()  # start of the first byte, bytes
+        self._free = 0
+
+    def send(self, data: bytes, now_us: int) -> int:
+        """Put `data` on the line after what is on it already; return when its last byte will have arrived [us]."""
+        start = max(now_us * self.baud, self._free)
+        self._free = start + len(data) * BITS_PER_BYTE * _SECOND_US
+        if data:
+            self._runs.append((start, data))
+        return -(-self._free // self.baud)
+
+    def take(self, now_us: int) -> bytes:
+        """Return, once, the bytes that have arrived by now."""
+        taken = b""
+        while self._runs:
+            start, data = self._runs[0]
+            count = (now_us * self.baud - start) // (BITS_PER_BYTE * _SECOND_US)
+            if count < len(data):
+                if count > 0:
+                    self._runs[0] = (start + count * BITS_PER_BYTE * _SECOND_US, data[count:])
+                    taken += data[:count]
+                break
+            taken += data
+            self._runs.popleft()
+        return taken
+
+    def next_us(self) -> int | None:
+        """Return when the oldest write on the line will have arrived as a whole, or None on a silent line."""
+        if not self._runs:
+            return None
+        start, data = self._runs[0]
+        return -(-(start + len(data) * BITS_PER_BYTE * _SECOND_US) // self.baud)
+
+    def waiting(self, now_us: int) -> int:
+        """Return how many bytes have not fully left yet."""
+        bits = max(0, self._free - now_us * self.baud)
+        return -(-bits // (BITS_PER_BYTE * _SECOND_US))
+
+    def clear(self, now_us: int) -> None:
+        """Drop what is on the line."""
+        self._runs.clear()
+        self._free = now_us * self.baud
+
+
+class Uart:
+    """The device's end of a line: a receive and a transmit buffer of 256 bytes, both lazily served.
+
+    `sent`, where set, is told of each device write and when it will have arrived at the host as a whole.
+    """
+
+    def __init__(self, host_baud: int) -> None:
+        self.inward = Wire(host_baud)
+        self.outward = Wire(host_baud)
+        self.overruns = 0
+        self.misread = 0
+        self.is_open = False
+        self.connected = True
+        self.sent: Callable[[int], None] | None = None
+        self._received = bytearray()
+        self._landed = b""
+        self._room = BUFFER_BYTES
+        self._send_room = BUFFER_BYTES
+
+    def open(self, baud: int, now_us: int, rx_bytes: int = BUFFER_BYTES, tx_bytes: int = BUFFER_BYTES) -> None:
+        """Start the device's end at `baud`; what arrived before is lost."""
+        self.close(now_us)
+        self.outward = Wire(baud)
+        self._room = rx_bytes
+        self._send_room = tx_bytes
+        self.is_open = True
+
+    def close(self, now_us: int) -> None:
+        """Stop the device's end, as a reset does: bytes on the way out are cut off."""
+        self.inward.take(now_us)
+        self._received.clear()
+        self._land(now_us)
+        self.outward.clear(now_us)
+        self.is_open = False
+
+    def any(self, now_us: int) -> int:
+        """Return how many received bytes wait."""
+        self._fill(now_us)
+        return len(self._received)
+
+    def read(self, count: int, now_us: int) -> bytes:
+        """Return up to `count` received bytes."""
+        self._fill(now_us)
+        data = bytes(self._received[:count])
+        del self._received[:count]
+        return data
+
+    def write(self, data: bytes, now_us: int) -> int:
+        """Send as much of `data` as the transmit buffer takes; return how much that is."""
+        data = data[: max(0, self._send_room - self.outward.waiting(now_us))]
+        arrives_us = self.outward.send(self._as_heard(data), now_us)
+        if self.sent is not None and self.connected:
+            self.sent(arrives_us)
+        return len(data)
+
+    def host_write(self, data: bytes, now_us: int) -> None:
+        """Put the host's bytes on the line."""
+        if self.connected:
+            self.inward.send(data, now_us)
+
+    def host_read(self, now_us: int) -> bytes:
+        """Return the bytes that have reached the host."""
+        self._land(now_us)
+        data, self._landed = self._landed, b""
+        return data
+
+    def host_wake_us(self) -> int | None:
+        """Return when the next device write will have reached the host as a whole, or None."""
+        return self.outward.next_us() if self.connected else None
+
+    def cut(self, now_us: int) -> None:
+        """Pull the cable out: what is on it is lost."""
+        self._fill(now_us)
+        self.inward.clear(now_us)
+        self._land(now_us)
+        self.connected = False
+
+    def join(self, now_us: int) -> None:
+        """Plug the cable in again."""
+        self._land(now_us)
+        self.connected = True
+
+    def _land(self, now_us: int) -> None:
+        arrived = self.outward.take(now_us)
+        if self.connected:
+            self._landed += arrived
+
+    def _fill(self, now_us: int) -> None:
+        arrived = self.inward.take(now_us)
+        if not arrived or not self.is_open:
+            return
+        room = self._room - len(self._received)
+        self._received += self._as_heard(arrived[:room])
+        self.overruns += max(0, len(arrived) - room)
+
+    def _as_heard(self, data: bytes) -> bytes:
+        """Return `data` as the other end reads it: noise when the two rates differ by more than 3 %."""
+        if abs(self.outward.baud - self.inward.baud) * 100 <= 3 * self.inward.baud:
+            return data
+        self.misread += len(data)
+        return bytes(byte ^ 0xA5 for byte in data)

@@ -1,0 +1,1 @@
+"""Worlds in which the firmware's files run on the bench's board."""
