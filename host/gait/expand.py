@@ -1,0 +1,267 @@
+"""Works a script out for one robot: params folded, defs and coil names replaced, every `together` on one timeline.
+
+Everything that is wrong is reported before it gives up, so that one run shows all of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from host.gait import tree, units
+from host.gait.conditions import condition
+from host.gait.declare import check_head, declare_defs, declare_params
+from host.gait.diagnostics import Problems, did_you_mean
+from host.gait.plan import Delay, Fire, Guard, Loop, Op, Step, Wait
+from host.gait.scope import CoilSet, Scope, Value
+from host.gait.script import Script
+from host.gait.timeline import TooLarge, duration_ms, together
+from host.gait.tree import Place, Statement
+from host.profile import Profile
+from protocol import program
+
+STATEMENTS_MAX = 50_000
+WAIT_MAX_MS = 24 * 3600 * 1000
+FIRE_MAX_MS = 0xFFFF
+COUNT_MAX = 0xFFFF
+CUTOFF_MAX_DECIDEGC = 0x7FFF
+CHOICES = {"abort": program.ABORT, "continue": program.CONTINUE}
+
+
+@dataclass(frozen=True)
+class Where:
+    """Where a statement stands: the names that hold there, the calls that led there, what it is within."""
+
+    scope: Scope
+    calls: tuple[Place, ...] = ()
+    defs: tuple[str, ...] = ()
+    top: bool = True
+    together: bool = False
+
+
+@dataclass
+class Expansion:
+    """A script worked out for a robot."""
+
+    plan: tuple[Op, ...]
+    steps: tuple[Step, ...]
+    params: dict[str, Value]
+
+
+def expand(script: Script, profile: Profile, overrides: Sequence[str], problems: Problems) -> Expansion:
+    """Return the plan and its steps; what is wrong is added to `problems`."""
+    scope = Scope(problems, profile, unread=frozenset(script.unread_words()))
+    check_head(script, profile, problems)
+    declare_params(script, scope, overrides)
+    worker = _Expander(script, problems, declare_defs(script, scope))
+    plan: list[Op] = []
+    try:
+        plan = worker.block(script.main.statements, Where(scope))
+        worker.try_uncalled(scope)
+    except TooLarge:
+        problems.add(Place(script.main.name, 1, 1, 2), "E114", "the script unrolls to more than any robot holds")
+    return Expansion(tuple(plan), tuple(worker.steps), scope.params)
+
+
+@dataclass
+class _Expander:
+    script: Script
+    problems: Problems
+    defs: dict[str, tree.Define]
+    steps: list[Step] = field(default_factory=list)
+    called: set[str] = field(default_factory=set)
+    left: int = STATEMENTS_MAX
+
+    def block(self, statements: Sequence[Statement], where: Where) -> list[Op]:
+        """Return the ops of statements that run one after another."""
+        return [op for statement in statements for op in self.statement(statement, where)]
+
+    def statement(self, node: Statement, where: Where) -> list[Op]:  # noqa: PLR0911  # one for each statement
+        """Return the ops of one statement."""
+        self.left -= 1
+        if self.left < 0:
+            raise TooLarge
+        match node:
+            case tree.Fire():
+                return self._fire(node, where)
+            case tree.Wait():
+                return self._wait(node, where)
+            case tree.WaitUntil():
+                return self._wait_until(node, where)
+            case tree.Repeat():
+                return self._repeat(node, where)
+            case tree.Together():
+                return self._together(node, where)
+            case tree.Call():
+                return self._call(node, where)
+            case tree.Guard():
+                return self._guard(node, where)
+            case tree.Broken():
+                return self.block(node.body, replace(where, top=False))
+        if not where.top:
+            word = self._line(node.place).split()[0]
+            self.problems.add(node.place, "E112", f"`{word}` belongs at the top level of the script")
+        return []
+
+    def try_uncalled(self, scope: Scope) -> None:
+        """Look for mistakes in the defs that nobody calls; what their arguments will be is not known."""
+        steps = list(self.steps)
+        for name in [name for name in self.defs if name not in self.called]:
+            define = self.defs[name]
+            arguments = dict.fromkeys((parameter.text for parameter in define.parameters), None)
+            self.block(define.body, Where(scope.inner(arguments), defs=(name,), top=False))
+        self.steps = steps
+
+    def _fire(self, node: tree.Fire, where: Where) -> list[Op]:
+        scope = where.scope
+        self._once(node.clauses)
+        if not node.coils:
+            self.problems.add(node.place, "E130", "which coils?", "name them after `fire`")
+        mask = scope.coils(node.coils)
+        duty = self._clause(node, "at", scope, units.SHARE, 1, 1000)
+        time_ms = self._clause(node, "for", scope, units.TIME, 1, FIRE_MAX_MS)
+        cutoff = self._clause(node, "until", scope, units.TEMPERATURE, 1, CUTOFF_MAX_DECIDEGC)
+        overlap_ms = self._clause(node, "overlap", scope, units.TIME, 0, FIRE_MAX_MS) or 0
+        ramp_ms = self._clause(node, "ramp", scope, units.TIME, 0, FIRE_MAX_MS) or 0
+        for word, code, form in (("at", "E132", "at 60 %"), ("for", "E133", "for 600 ms")):
+            if node.clause(word) is None:
+                what = "duty" if word == "at" else "time"
+                self.problems.add(node.place, code, f"fire has no {what}", f"add `{form}`")
+        if not mask or duty is None or time_ms is None or not self._fits(node, time_ms, overlap_ms, ramp_ms):
+            return []
+        step = self._step(node.place, where)
+        fire = Fire(mask, duty, time_ms, cutoff or 0, ramp_ms, step, node)
+        return [fire, Delay(time_ms - overlap_ms, step)] if overlap_ms < time_ms else [fire]
+
+    def _clause(self, node: tree.Fire, word: str, scope: Scope, kind: str, least: int, most: int) -> int | None:
+        clause = node.clause(word)
+        return None if clause is None else scope.measured(clause.value, kind, least, most)
+
+    def _once(self, clauses: Sequence[tree.Clause | tree.Otherwise]) -> None:
+        seen: set[str] = set()
+        for clause in clauses:
+            word = clause.word if isinstance(clause, tree.Clause) else "else"
+            if word in seen:
+                self.problems.add(clause.place, "E111", f"`{word}` is given twice")
+            seen.add(word)
+
+    def _fits(self, node: tree.Fire, time_ms: int, overlap_ms: int, ramp_ms: int) -> bool:
+        for word, part_ms in (("overlap", overlap_ms), ("ramp", ramp_ms)):
+            clause = node.clause(word)
+            if clause is not None and part_ms > time_ms:
+                message = f"the {word} of {part_ms} ms is longer than the fire of {time_ms} ms"
+                self.problems.add(clause.place, "E134", message)
+                return False
+        return True
+
+    def _wait(self, node: tree.Wait, where: Where) -> list[Op]:
+        if node.time is None:
+            self.problems.add(node.place, "E140", "wait for how long?", "write `wait 500 ms` or `wait until ...`")
+            return []
+        time_ms = where.scope.measured(node.time, units.TIME, 1, WAIT_MAX_MS)
+        return [Delay(time_ms, self._step(node.place, where))] if time_ms else []
+
+    def _wait_until(self, node: tree.WaitUntil, where: Where) -> list[Op]:
+        self._once(node.clauses)
+        if where.together:
+            self.problems.add(node.place, "E143", "a wait for a condition cannot stand in a together")
+        tested = condition(node.condition, where.scope)
+        timeout_ms, otherwise = self._timeout(node, where.scope), self._otherwise(node)
+        if where.together or tested is None or timeout_ms is None or otherwise is None:
+            return []
+        return [Wait(tested, timeout_ms, otherwise, self._step(node.place, where), node)]
+
+    def _timeout(self, node: tree.WaitUntil, scope: Scope) -> int | None:
+        for clause in node.clauses:
+            if isinstance(clause, tree.Clause):
+                return scope.measured(clause.value, units.TIME, 1, WAIT_MAX_MS)
+        self.problems.add(node.place, "E141", "wait has no timeout", "add `timeout 4 s`")
+        return None
+
+    def _otherwise(self, node: tree.WaitUntil) -> int | None:
+        for clause in node.clauses:
+            if isinstance(clause, tree.Otherwise):
+                if clause.choice.text in CHOICES:
+                    return CHOICES[clause.choice.text]
+                near = did_you_mean(clause.choice.text, CHOICES)
+                self.problems.add(clause.place, "E142", "else what? write `else continue` or `else abort`", near)
+                return None
+        self.problems.add(node.place, "E142", "wait has no else", "add `else continue` or `else abort`")
+        return None
+
+    def _guard(self, node: tree.Guard, where: Where) -> list[Op]:
+        if not where.top:
+            self.problems.add(node.place, "E112", "`guard` belongs at the top level of the script")
+        tested = condition(node.condition, where.scope)
+        return [Guard(tested, node)] if tested else []
+
+    def _repeat(self, node: tree.Repeat, where: Where) -> list[Op]:
+        count = self._count(node, where.scope)
+        body = self.block(node.body, replace(where, top=False))
+        if count is None or not body:
+            return []
+        if not duration_ms(body) and not _waits(body):
+            self.problems.add(node.place, "E152", "the repeat takes no time", "let something in it take time")
+        return [Loop(count, tuple(body), node)]
+
+    def _count(self, node: tree.Repeat, scope: Scope) -> int | None:
+        if node.count is None:
+            self.problems.add(node.place, "E150", "repeat how often?", "write `repeat 3:`")
+            return None
+        quantity = scope.of_kind(node.count, units.NUMBER)
+        if quantity is None:
+            return None
+        if quantity.value.denominator != 1 or not 1 <= quantity.value <= COUNT_MAX:
+            self.problems.add(node.count.place, "E151", f"{quantity} is no whole number from 1 to {COUNT_MAX}")
+            return None
+        return int(quantity.value)
+
+    def _together(self, node: tree.Together, where: Where) -> list[Op]:
+        inner = replace(where, top=False, together=True)
+        return together([self.statement(child, inner) for child in node.body], self.problems)
+
+    def _call(self, node: tree.Call, where: Where) -> list[Op]:
+        name = node.name.text
+        define = self.defs.get(name)
+        self.called.add(name)
+        if define is None:
+            if name not in where.scope.unread:
+                help = did_you_mean(name, [*self.defs, "fire", "wait", "repeat"])
+                self.problems.add(node.name.place, "E162", f"there is no def `{name}`", help)
+            return []
+        if name in where.defs:
+            chain = " -> ".join([*where.defs, name])
+            self.problems.add(node.place, "E164", f"`{name}` calls itself: {chain}")
+            return []
+        given, wanted = len(node.arguments), len(define.parameters)
+        if given != wanted:
+            self.problems.add(node.place, "E163", f"`{name}` takes {wanted} arguments, not {given}")
+            return []
+        values = [self._argument(argument, where.scope) for argument in node.arguments]
+        names = [parameter.text for parameter in define.parameters]
+        scope = where.scope.inner(dict(zip(names, values, strict=True)))
+        inner = replace(where, scope=scope, calls=(*where.calls, node.place), defs=(*where.defs, name), top=False)
+        return self.block(define.body, inner)
+
+    def _argument(self, node: tree.Expression | tree.Coils, scope: Scope) -> Value:
+        if isinstance(node, tree.Coils):
+            mask = scope.coils(node.coils)
+            return CoilSet(mask) if mask else None
+        if isinstance(node, tree.Reference):
+            return scope.lookup(node)
+        return scope.value(node)
+
+    def _step(self, place: Place, where: Where) -> int:
+        for step in reversed(self.steps[-8:]):
+            if step.place == place and step.calls == where.calls:
+                return step.number
+        self.steps.append(Step(len(self.steps) + 1, place, self._line(place).strip(), where.calls))
+        return len(self.steps)
+
+    def _line(self, place: Place) -> str:
+        files = {file.name: file for file in self.script.files}
+        return files[place.file].line(place.line)
+
+
+def _waits(ops: Sequence[Op]) -> bool:
+    return any(isinstance(op, Wait) or (isinstance(op, Loop) and _waits(op.body)) for op in ops)

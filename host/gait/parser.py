@@ -1,0 +1,110 @@
+"""Reads gait scripts: text to tree, with every mistake of form reported at once.
+
+A line that cannot be read is reported, set aside and the rest is read again, so that one slip does not hide the next.
+Nothing that a text contains raises anything but GaitError.
+
+    script = load("gaits/circular-crawl.gait")
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache
+from typing import cast
+
+from lark import Lark, Token
+from lark.exceptions import UnexpectedInput
+from lark.indenter import Indenter
+
+from host.gait import syntax, tree
+from host.gait.build import Builder
+from host.gait.diagnostics import Diagnostic, GaitError
+from host.gait.syntax import BROKEN, BadIndent
+from host.gait.tree import Comment, Expression, File, Place
+
+LINES_MAX = 20_000
+LINE_MAX = 1_000
+DEPTH_MAX = 30
+REPORTS_MAX = 20
+
+
+class Blocks(Indenter):
+    """Tells where blocks begin and end; a step back to no open block is a BadIndent."""
+
+    NL_type = "_NL"
+    OPEN_PAREN_types: list[str] = []  # noqa: RUF012  # lark reads these names on the class
+    CLOSE_PAREN_types: list[str] = []  # noqa: RUF012
+    INDENT_type = "_INDENT"
+    DEDENT_type = "_DEDENT"
+    tab_len = 8
+
+    def handle_NL(self, token: Token) -> Iterator[Token]:
+        """Yield the tokens of a line end, and of the blocks it opens or closes."""
+        indent = len(token.rsplit("\n", 1)[1])
+        if (indent < self.indent_level[-1] and indent not in self.indent_level) or len(self.indent_level) > DEPTH_MAX:
+            raise BadIndent(token.end_line or 1, indent, len(self.indent_level) > DEPTH_MAX)
+        yield from super().handle_NL(token)
+
+
+@cache
+def grammar() -> Lark:
+    """Return the parser of the one grammar file; built once."""
+    return Lark.open(
+        "gait.lark",
+        rel_to=__file__,
+        parser="lalr",
+        lexer="basic",
+        postlex=Blocks(),
+        start=["file", "value"],
+        maybe_placeholders=True,
+    )
+
+
+def parse_file(text: str, name: str) -> tuple[File, list[Diagnostic]]:
+    """Return the tree of one file, unread lines as Broken, and what is wrong with their form."""
+    lines = text.replace("\r\n", "\n").split("\n")
+    found = syntax.unreadable(lines, name, LINES_MAX, LINE_MAX)
+    if found:
+        return File(name, (), (), tuple(lines)), found
+    readable = list(lines)
+    while len(found) < REPORTS_MAX:
+        try:
+            parsed = grammar().parse("\n".join(readable) + "\n", start="file")
+        except (UnexpectedInput, BadIndent) as error:
+            diagnostic = syntax.say(error, readable, lines, name)
+            found.append(diagnostic)
+            if not _set_aside(readable, diagnostic):
+                break
+            continue
+        statements = cast(tuple[tree.Statement, ...], Builder(name).transform(parsed))
+        return File(name, statements, tuple(_comments(lines, name)), tuple(lines)), found
+    return File(name, (), (), tuple(lines)), found
+
+
+def parse_value(text: str, name: str) -> Expression:
+    """Return the expression that `text` is, or raise GaitError; places are in a file called `name`."""
+    found = syntax.unreadable([text], name, 1, LINE_MAX)
+    if found:
+        raise GaitError(found)
+    try:
+        return cast(Expression, Builder(name).transform(grammar().parse(text, start="value")))
+    except UnexpectedInput as error:
+        raise GaitError([syntax.say(error, [text], [text], name)]) from None
+
+
+def _set_aside(lines: list[str], diagnostic: Diagnostic) -> bool:
+    """Replace the line that `diagnostic` names by a mark that can be read; False if that cannot help."""
+    at = diagnostic.place.line - 1
+    if diagnostic.code in ("E105", "E114") or not 0 <= at < len(lines) or BROKEN in lines[at]:
+        return False
+    heads = syntax.next_indent(lines, at) > syntax.indent(lines[at])
+    lines[at] = " " * syntax.indent(lines[at]) + BROKEN + (":" if heads else "")
+    return True
+
+
+def _comments(lines: list[str], name: str) -> Iterator[Comment]:
+    for number, line in enumerate(lines, 1):
+        match = syntax.COMMENT.match(line)
+        if match:
+            column = match.start(1) + 1
+            yield Comment(match[1], Place(name, number, column, len(line) + 1))

@@ -1,0 +1,104 @@
+"""A compiled gait before it becomes bytes: orders in the robot's own integers, each with the line it came from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from host.gait import tree
+from host.gait.tree import Place
+from protocol import program
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One line of the script as the robot counts them; `calls` are the lines that led to it, outermost first."""
+
+    number: int
+    place: Place
+    text: str
+    calls: tuple[Place, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Fire:
+    """Heat the coils of `mask`; does not wait."""
+
+    mask: int
+    duty_permille: int
+    time_ms: int
+    cutoff_decidegc: int
+    ramp_ms: int
+    step: int
+    node: tree.Fire
+
+
+@dataclass(frozen=True, slots=True)
+class Delay:
+    """Let time pass."""
+
+    time_ms: int
+    step: int
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """Wait for a condition, for at most `timeout_ms`."""
+
+    condition: program.Condition
+    timeout_ms: int
+    otherwise: int
+    step: int
+    node: tree.WaitUntil
+
+
+@dataclass(frozen=True, slots=True)
+class Guard:
+    """From here on, trip when the condition holds."""
+
+    condition: program.Condition
+    node: tree.Guard
+
+
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """Run the body `count` times."""
+
+    count: int
+    body: tuple[Op, ...]
+    node: tree.Repeat
+
+
+Op = Fire | Delay | Wait | Guard | Loop
+
+
+def encode(plan: Iterable[Op]) -> bytes:
+    """Return the op-codes of a plan, with a step mark wherever the line changes."""
+    return _block(plan) + program.halt()
+
+
+def _block(plan: Iterable[Op]) -> bytes:
+    parts = []
+    step = 0
+    for op in plan:
+        if isinstance(op, Loop):
+            parts += [program.repeat(op.count), _block(op.body), program.next_()]
+            step = 0
+            continue
+        if not isinstance(op, Guard) and op.step != step:
+            step = op.step
+            parts.append(program.step(step))
+        parts.append(_op(op))
+    return b"".join(parts)
+
+
+def _op(op: Fire | Delay | Wait | Guard) -> bytes:
+    if isinstance(op, Delay):
+        return bytes(program.delay(op.time_ms))
+    if isinstance(op, Wait):
+        return bytes(program.wait(op.condition, op.timeout_ms, op.otherwise))
+    if isinstance(op, Guard):
+        return bytes(program.guard(op.condition))
+    if op.ramp_ms:
+        return bytes(program.ramp(op.mask, op.duty_permille, op.time_ms, op.cutoff_decidegc, op.ramp_ms))
+    return bytes(program.fire(op.mask, op.duty_permille, op.time_ms, op.cutoff_decidegc))

@@ -1,0 +1,168 @@
+"""What names and values mean at one place of a script: params, arguments, coils, quantities.
+
+A value that cannot be worked out is reported once and is None from then on, so that one mistake gives one message.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+
+from host.gait import tree, units
+from host.gait.diagnostics import Problems, did_you_mean
+from host.gait.tree import Expression, Name, Place, Reference
+from host.gait.units import Quantity, UnitError
+from host.profile import Profile
+
+EVERY = "all"
+
+
+@dataclass(frozen=True, slots=True)
+class CoilSet:
+    """Some coils, as a mask of channels."""
+
+    mask: int
+
+
+Value = Quantity | CoilSet | None  # None: wrong, and reported already
+
+
+@dataclass
+class Scope:
+    """The names that hold at one place; `unread` are words of lines that could not be read."""
+
+    problems: Problems
+    profile: Profile
+    params: dict[str, Value] = field(default_factory=dict)
+    arguments: Mapping[str, Value] = field(default_factory=dict)
+    unread: frozenset[str] = frozenset()
+
+    def inner(self, arguments: Mapping[str, Value]) -> Scope:
+        """Return the scope of a def that is called with these arguments."""
+        return Scope(self.problems, self.profile, self.params, arguments, self.unread)
+
+    def value(self, node: Expression) -> Quantity | None:
+        """Return what an expression comes to."""
+        if isinstance(node, tree.Number):
+            return self._number(node)
+        if isinstance(node, Reference):
+            return self._quantity(node)
+        if isinstance(node, tree.Negative):
+            operand = self.value(node.operand)
+            return None if operand is None else -operand
+        left, right = self.value(node.left), self.value(node.right)
+        if left is None or right is None:
+            return None
+        try:
+            return left.combine(node.operator, right)
+        except UnitError as error:
+            self.problems.add(node.place, error.code, str(error))
+            return None
+
+    def of_kind(self, node: Expression, kind: str) -> Quantity | None:
+        """Return what an expression comes to, which must be of `kind`."""
+        quantity = self.value(node)
+        if quantity is None or quantity.kind == kind:
+            return quantity
+        self._wrong_kind(node, quantity, kind)
+        return None
+
+    def measured(self, node: Expression, kind: str, least: int, most: int) -> int | None:
+        """Return the whole number of base units of a value that must be of `kind` and within [least, most]."""
+        quantity = self.of_kind(node, kind)
+        if quantity is None:
+            return None
+        number = quantity.rounded()
+        if not least <= number <= most:
+            low, high = (Quantity(Fraction(limit), kind) for limit in (least, most))
+            self.problems.add(node.place, "E125", f"{quantity} is outside {low} .. {high}")
+            return None
+        return number
+
+    def coils(self, nodes: Iterable[tree.Coil]) -> int | None:
+        """Return the mask of a list of coils, groups and arguments."""
+        mask, sound = 0, True
+        for node in nodes:
+            named = self.coil(node)
+            if named is None:
+                sound = False
+                continue
+            if mask & named:
+                twice = " ".join(self.profile.named(mask & named))
+                self.problems.add(node.place, "E136", f"coil {twice} is named twice")
+            mask |= named
+        return mask if sound else None
+
+    def coil(self, node: tree.Coil) -> int | None:
+        """Return the mask of one coil, group or argument."""
+        if isinstance(node, Reference):
+            value = self.lookup(node)
+            if isinstance(value, Quantity):
+                self.problems.add(node.place, "E165", f"`${node.name}` is {value}, not a coil")
+                return None
+            return None if value is None else value.mask
+        known = self.groups()
+        if node.text not in known:
+            message = f"the robot {self.profile.robot} has no coil `{node.text}`"
+            help = did_you_mean(node.text, known) or f"it has: {' '.join(known)}"
+            self.problems.add(node.place, "E131", message, help)
+            return None
+        return known[node.text]
+
+    def groups(self) -> dict[str, int]:
+        """Return the mask of every coil and group by its name."""
+        labels = self.profile.labels
+        known = {label: 1 << channel for channel, label in enumerate(labels)}
+        known.setdefault(EVERY, (1 << len(labels)) - 1)
+        for name in self.profile.groups:
+            known[name] = self.profile.mask([name])
+        return known
+
+    def lookup(self, node: Reference) -> Value:
+        """Return what `$name` stands for."""
+        for names in (self.arguments, self.params):
+            if node.name in names:
+                return names[node.name]
+        if node.name not in self.unread:
+            known = [*self.arguments, *self.params]
+            self.problems.add(node.place, "E160", f"`${node.name}` is not declared", did_you_mean(node.name, known))
+        return None
+
+    def declare(self, name: Name, value: Value) -> None:
+        """Add a parameter; a second one of that name is reported."""
+        if name.text in self.params:
+            self.problems.add(name.place, "E161", f"`{name.text}` is declared twice")
+        self.params[name.text] = value
+
+    def _number(self, node: tree.Number) -> Quantity | None:
+        if node.value > units.LARGEST:
+            self.problems.add(node.place, "E125", "the number is too large")
+            return None
+        if node.unit is None:
+            return Quantity(node.value, units.NUMBER)
+        unit = units.UNITS.get(node.unit)
+        if unit is None:
+            near = units.ALIASES.get(node.unit)
+            help = f"did you mean `{near}`?" if near else f"units are: {' '.join(units.UNITS)}"
+            self.problems.add(node.place, "E121", f"`{node.unit}` is no unit", help)
+            return None
+        return Quantity(node.value * unit.factor, unit.kind)
+
+    def _quantity(self, node: Reference) -> Quantity | None:
+        value = self.lookup(node)
+        if isinstance(value, CoilSet):
+            self.problems.add(node.place, "E165", f"`${node.name}` is a coil, not a value")
+            return None
+        return value
+
+    def _wrong_kind(self, node: Expression, quantity: Quantity, kind: str) -> None:
+        place: Place = node.place
+        if quantity.kind == units.NUMBER:
+            choices = " or ".join(f"`{quantity} {unit}`" for unit in units.OF_KIND[kind])
+            self.problems.add(place, "E120", f"{quantity} what? write {choices}")
+        elif kind == units.NUMBER:
+            self.problems.add(place, "E122", f"a plain number is needed here, not {quantity}")
+        else:
+            wanted = " or ".join(units.OF_KIND[kind])
+            self.problems.add(place, "E122", f"a {kind} ({wanted}) is needed here, not {quantity}")

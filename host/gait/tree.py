@@ -1,0 +1,252 @@
+"""The tree of a gait script: what was written and where, before any name or unit is looked up.
+
+Every node carries its place, so that each later complaint can point at a line and a column. Comments are kept beside
+the statements, with their places, for tools that write a script back.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A stretch of one source line; lines and columns count from 1, `end_column` is the first column after it."""
+
+    file: str
+    line: int
+    column: int
+    end_column: int
+
+    def upto(self, other: Place) -> Place:
+        """Return the stretch from here to the end of `other`, within this line."""
+        return Place(self.file, self.line, self.column, max(other.end_column, self.end_column))
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A word as written: a coil, a group, a parameter, a choice."""
+
+    text: str
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """`$name`: the value of a parameter or an argument."""
+
+    name: str
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A number and the unit written after it, if any."""
+
+    value: Fraction
+    unit: str | None
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """Two values joined by `+ - * /`."""
+
+    operator: str
+    left: Expression
+    right: Expression
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Negative:
+    """A value with a minus before it."""
+
+    operand: Expression
+    place: Place
+
+
+Expression = Number | Reference | Binary | Negative
+Coil = Name | Reference
+
+
+@dataclass(frozen=True, slots=True)
+class Coils:
+    """A list of coils given as an argument of a call."""
+
+    coils: tuple[Coil, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Clause:
+    """`at 60 %`, `for 600 ms`, `timeout 4 s`: a word and its value."""
+
+    word: str
+    value: Expression
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Otherwise:
+    """`else NAME`: what a wait does when its time is over."""
+
+    choice: Name
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """`A.temperature > 95 C`, `all front.temperature < 45 C`: evaluated on the robot, never on the host."""
+
+    quantifier: Name | None
+    subject: Coil
+    quantity: Name
+    compare: str
+    value: Expression
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Gait:
+    """`gait 1`: the version of the language."""
+
+    version: Fraction
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """`robot NAME`: the robot the script is written for."""
+
+    name: str
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Param:
+    """A named value that the command line may change, within its range."""
+
+    name: Name
+    value: Expression
+    low: Expression | None
+    high: Expression | None
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Include:
+    """`include "file"`: params and defs of another file, named relative to this one."""
+
+    path: str
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Define:
+    """A named block with arguments."""
+
+    name: Name
+    parameters: tuple[Name, ...]
+    body: tuple[Statement, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Fire:
+    """Heat coils: the order carries its own end."""
+
+    coils: tuple[Coil, ...]
+    clauses: tuple[Clause, ...]
+    place: Place
+
+    def clause(self, word: str) -> Clause | None:
+        """Return the first clause that begins with `word`, or None."""
+        return next((clause for clause in self.clauses if clause.word == word), None)
+
+
+@dataclass(frozen=True, slots=True)
+class Repeat:
+    """A block that runs a counted number of times."""
+
+    count: Expression | None
+    body: tuple[Statement, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Together:
+    """A block whose statements all start at once."""
+
+    body: tuple[Statement, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """Let time pass."""
+
+    time: Expression | None
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class WaitUntil:
+    """Wait for a condition, for a bounded time."""
+
+    condition: Condition
+    clauses: tuple[Clause | Otherwise, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Guard:
+    """A condition under which the robot switches everything off."""
+
+    condition: Condition
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """Run a def with these arguments."""
+
+    name: Name
+    arguments: tuple[Expression | Coils, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Broken:
+    """A line that could not be read (reported already); its block, if it heads one, is kept."""
+
+    body: tuple[Statement, ...]
+    place: Place
+
+
+Statement = (
+    Gait | Robot | Param | Include | Define | Fire | Repeat | Together | Wait | WaitUntil | Guard | Call | Broken
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Comment:
+    """A comment, from its `#` to the end of the line."""
+
+    text: str
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class File:
+    """One source file: its statements, its comments and its lines as written."""
+
+    name: str
+    statements: tuple[Statement, ...]
+    comments: tuple[Comment, ...]
+    lines: tuple[str, ...]
+
+    def line(self, number: int) -> str:
+        """Return the source line of that number, or an empty text."""
+        return self.lines[number - 1] if 0 < number <= len(self.lines) else ""
