@@ -1,0 +1,62 @@
+r"""The whole plant of a ring robot in one kernel: coils heat and transform, then the body moves, in turns.
+
+In each turn the phase advances in steps of at most 1 ms at the length the body last had, and the body then moves for the same
+time at frozen phase (`motion.march`). A turn is as long as the body's own step: 5 ms at rest, 0.1 ms in a snap. Taking the
+length and not the force from the body keeps this stable: at given force the phase of a stressed coil runs away.
+
+Source: staggered scheme, derived here; that its step does not matter is checked in tests/test_physics_ring_crawl.py.
+The plane is y = 0 with x along it, up the slope; gravity turns. It may be tilted while things lie on it:
+
+.. math::  \theta(t) = \theta_1 \, \mathrm{smooth}\left(\frac{t - t_0}{t_1}\right), \quad
+           g = 9.81 \, (-\sin \theta, -\cos \theta)                                                              (B1)
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from hil_sim.physics import coil
+from hil_sim.physics.coilset import Coils, CoilState
+from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.motion import COIL_WORK, STEP, TIME, Method, Motion, march
+from hil_sim.physics.ring import LENGTH, Ring, freeze
+
+COIL_STEP = 1e-3  # [s]
+
+
+class World(NamedTuple):
+    """Gravity [m/s2], final slope [rad], when the plane begins to tilt and for how long it does [s]."""
+
+    gravity: float
+    slope: float
+    tilt_from: float
+    tilt_for: float
+
+
+@kernel
+def gravity(world: World, t: float) -> tuple[float, float]:
+    """Return gravity along and across the plane at time t (B1) [m/s2]."""
+    part = 1.0
+    if world.tilt_for > 0.0:
+        part = min(1.0, max(0.0, (t - world.tilt_from) / world.tilt_for))
+    angle = world.slope * part * part * (3.0 - 2.0 * part)
+    return -world.gravity * np.sin(angle), -world.gravity * np.cos(angle)
+
+
+@kernel
+def advance(
+    ring: Ring, coils: Coils, state: CoilState, world: World, method: Method, m: Motion, P: Array, duration: float
+) -> None:
+    """Advance coils and body by exactly `duration` [s] with power P [W] in each coil."""
+    left = duration
+    while left > 0.0:
+        h = min(left, m.tally[STEP])
+        if h < left < 2.0 * h:
+            h = 0.5 * left
+        turns = int(np.ceil(h / COIL_STEP - 1e-9))
+        for _ in range(turns):
+            coil.advance(state, h / turns, P, m.spokes[LENGTH], coils)
+        freeze(coils, state.xi, m.spokes)
+        gx, gy = gravity(world, m.tally[TIME] + h)
+        march(ring, gx, gy, method, m, h)
+        left -= h
