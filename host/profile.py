@@ -12,10 +12,11 @@ from __future__ import annotations
 import json
 from binascii import crc32
 from collections.abc import Iterable
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from typing import Any, TypeVar
 
 from host.errors import BadRequest, Mismatch
+from protocol import program
 
 T = TypeVar("T")
 
@@ -59,6 +60,7 @@ class SupplyLimits:
     current_max_ma: int
     at_once_max: int
     low_mv: int
+    shunt_mohm: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +76,8 @@ class ProgramLimits:
     """What the robot's sequencer holds."""
 
     bytes_max: int
-    depth_max: int
-    guards_max: int
+    depth_max: int = program.DEPTH_MAX
+    guards_max: int = program.GUARDS_MAX
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,4 +143,5 @@ def read_profile(text: bytes) -> Profile:
 
 def _taken(kind: type[T], data: dict[str, Any]) -> T:
     """Return a `kind` made of the entries it knows; a newer robot may send more."""
-    return kind(**{field.name: data[field.name] for field in fields(kind)})  # type: ignore[arg-type]
+    names = [field.name for field in fields(kind) if field.name in data or field.default is MISSING]  # type: ignore[arg-type]
+    return kind(**{name: data[name] for name in names})

@@ -1,0 +1,216 @@
+"""Lines to a robot: one interface, whatever carries the bytes.
+
+An address is opened by the scheme before its first colon, found among the entry points `softrig.links`; an address
+without a scheme is a serial port. This is the only file of the host side that reads the wall clock or waits.
+
+    link = open_link("/dev/ttyACM0")
+    link.write(b"...")
+    data = link.read(link.now_s() + 0.1)
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+import select
+import socket
+import time
+from importlib.metadata import entry_points
+from typing import Any, NoReturn, Protocol
+
+from host.errors import BadRequest, LinkLost, NoRobot, PortAbsent, PortBusy, PortForbidden, SoftrigError
+from host.holder import holder_of
+
+BAUD = 115200
+CONNECT_S = 5.0
+WRITE_S = 2.0
+CHUNK = 65536
+
+
+class Link(Protocol):
+    """A line that carries bytes both ways, and the clock that its waiting goes by."""
+
+    def now_s(self) -> float:
+        """Return the host's clock: virtual on a bench in this process, monotonic on a port."""
+
+    def write(self, data: bytes) -> None:
+        """Send all of `data`, or raise LinkLost."""
+
+    def read(self, until_s: float) -> bytes:
+        """Return bytes as soon as there are any, b"" at `until_s`, or raise LinkLost."""
+
+    def close(self) -> None:
+        """Let go of the line; closing twice does nothing."""
+
+    @property
+    def observer(self) -> Any:
+        """Return what watches the robot from outside (`observe()`, `snapshot()`), or None."""
+
+
+def open_link(address: str) -> Link:
+    """Open the line at `address`; BadRequest when no scheme serves it, NoRobot and its kin when it cannot be had."""
+    schemes = {point.name: point for point in entry_points(group="softrig.links")}
+    scheme, colon, _ = address.partition(":")
+    if not (colon and scheme in schemes):
+        if colon and re.fullmatch("[a-z][a-z0-9]+", scheme) and not os.path.exists(address):
+            known = ", ".join(f"{name}:" for name in sorted(schemes))
+            raise BadRequest(f"no line {scheme}: known are {known} and the path of a port")
+        return open_serial(address)
+    try:
+        link: Link = schemes[scheme].load()(address)
+    except (OSError, LookupError, ValueError) as error:
+        raise NoRobot(f"{address}: {_one_line(error)}") from error
+    return link
+
+
+def open_serial(address: str) -> Link:
+    """Open a serial port or pty, for this program alone; an optional `serial:` goes before its path."""
+    import serial  # noqa: PLC0415
+
+    path = address.removeprefix("serial:")
+    try:
+        port = serial.Serial(path, BAUD, timeout=0, write_timeout=WRITE_S, exclusive=True)
+    except (OSError, ValueError) as error:
+        _refuse_port(path, error)
+    return SerialLink(port, path)
+
+
+def open_socket(address: str) -> Link:
+    """Open `socket://HOST:PORT`."""
+    match = re.fullmatch(r"socket:(?://)?(?P<host>\[[0-9a-fA-F:]+\]|[^:/\s]+):(?P<port>\d{1,5})/?", address)
+    if match is None:
+        raise BadRequest(f"{address}: write it as socket://127.0.0.1:7000")
+    place = (match["host"].strip("[]"), int(match["port"]))
+    try:
+        line = socket.create_connection(place, timeout=CONNECT_S)
+    except (OSError, OverflowError) as error:
+        raise PortAbsent(
+            f"{address}: {_one_line(error)}; start the bench with `softrig sim NAME --tcp {place[1]}`"
+        ) from error
+    line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+    return SocketLink(line, address)
+
+
+def wall_s() -> float:
+    """Return the wall clock's seconds, for figures of speed that no decision rests on."""
+    return time.perf_counter()
+
+
+class SerialLink:
+    """A serial port that is ours alone."""
+
+    observer = None
+
+    def __init__(self, port: Any, path: str) -> None:
+        self._port = port
+        self._path = path
+
+    def now_s(self) -> float:
+        """Return the monotonic clock."""
+        return time.monotonic()
+
+    def write(self, data: bytes) -> None:
+        """Send all of `data`; LinkLost when the port is gone or takes nothing for two seconds."""
+        try:
+            self._port.write(data)
+        except OSError as error:
+            raise LinkLost(_lost(self._path, error)) from error
+
+    def read(self, until_s: float) -> bytes:
+        """Return bytes as soon as there are any, or b"" at `until_s`; LinkLost when the port is gone."""
+        try:
+            data = self._waited(max(0.0, until_s - time.monotonic()))
+        except (OSError, TypeError) as error:  # pyserial lets a TypeError out when its port closes under it
+            raise LinkLost(_lost(self._path, error)) from error
+        if data is None:
+            raise LinkLost(_lost(self._path, None))
+        return data
+
+    def close(self) -> None:
+        """Let go of the port."""
+        self._port.close()
+
+    def _waited(self, seconds: float) -> bytes | None:
+        """Return what arrived within `seconds`; None at the end of the line."""
+        if os.name != "posix":
+            self._port.timeout = seconds
+            return bytes(self._port.read(1) + self._port.read(self._port.in_waiting))
+        if not select.select([self._port], [], [], seconds)[0]:
+            return b""
+        return os.read(self._port.fileno(), CHUNK) or None
+
+
+class SocketLink:
+    """A TCP connection to a bench or a serial server."""
+
+    observer = None
+
+    def __init__(self, line: socket.socket, address: str) -> None:
+        self._line = line
+        self._address = address
+
+    def now_s(self) -> float:
+        """Return the monotonic clock."""
+        return time.monotonic()
+
+    def write(self, data: bytes) -> None:
+        """Send all of `data`; LinkLost when the other end is gone or takes nothing for two seconds."""
+        try:
+            self._line.settimeout(WRITE_S)
+            self._line.sendall(data)
+        except OSError as error:
+            raise LinkLost(_lost(self._address, error)) from error
+
+    def read(self, until_s: float) -> bytes:
+        """Return bytes as soon as there are any, or b"" at `until_s`; LinkLost when the other end is gone."""
+        try:
+            if not select.select([self._line], [], [], max(0.0, until_s - time.monotonic()))[0]:
+                return b""
+            data = self._line.recv(CHUNK)
+        except (OSError, ValueError) as error:
+            raise LinkLost(_lost(self._address, error)) from error
+        if not data:
+            raise LinkLost(_lost(self._address, None))
+        return data
+
+    def close(self) -> None:
+        """Let go of the connection."""
+        self._line.close()
+
+
+def _refuse_port(path: str, error: Exception) -> NoReturn:
+    """Raise the error that says why the port cannot be had and what to do."""
+    number = getattr(error, "errno", None)
+    told: SoftrigError
+    if not os.path.exists(path) or number in (errno.ENOENT, errno.ENXIO, errno.ENODEV):
+        told = PortAbsent(f"no port {path}: `softrig ports` lists those there are")
+    elif number in (errno.EACCES, errno.EPERM):
+        told = PortForbidden(f"no permission for {path}: {_permission_of(path)}")
+    elif number in (errno.EBUSY, errno.EAGAIN, errno.EWOULDBLOCK) or "lock" in str(error):
+        told = PortBusy(f"{path} is held by {holder_of(path)}: end it, or use another port")
+    else:
+        told = PortAbsent(f"{path} is no serial port ({_one_line(error)}): `softrig ports` lists those there are")
+    raise told from error
+
+
+def _permission_of(path: str) -> str:
+    """Return what gives this user the right to open `path`."""
+    try:
+        import grp  # noqa: PLC0415
+
+        group = grp.getgrgid(os.stat(path).st_gid).gr_name
+    except (ImportError, KeyError, OSError):
+        return "run as a user who may open it"
+    return f"it belongs to the group {group}; `sudo usermod -aG {group} $USER`, then log in again"
+
+
+def _lost(address: str, error: Exception | None) -> str:
+    cause = f" ({_one_line(error)})" if error else ""
+    return f"{address}: the line broke{cause}; a robot that was armed switches its coils off by itself"
+
+
+def _one_line(error: Exception) -> str:
+    """Return the error's text without the number and the lines after the first."""
+    text = getattr(error, "strerror", None) or (error.args[0] if error.args else "") or type(error).__name__
+    return str(text).splitlines()[0]

@@ -1,0 +1,145 @@
+"""What a robot tells its host, decoded: telemetry, events, status and the answer to a stop.
+
+Times carry both clocks: `host_ms` is the host's at arrival, `now_ms` the robot's at sending. Units are the wire's,
+except temperatures, which are whole degrees and tenths.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from protocol import messages
+
+
+@dataclass(frozen=True, slots=True)
+class Telemetry:
+    """The robot at one instant; `duty_permille` and `temperature_degc` are in the order of its channels."""
+
+    host_ms: int
+    now_ms: int
+    state: str
+    step: int
+    supply_mv: int
+    current_ma: int
+    board_degc: float
+    duty_permille: tuple[int, ...]
+    temperature_degc: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something that happened on the robot; `value` is in the unit of the code's row, `coil` None when about none."""
+
+    host_ms: int
+    now_ms: int
+    event: str
+    code: int
+    step: int
+    coil: str | None
+    value: int
+
+
+@dataclass(frozen=True, slots=True)
+class Stopped:
+    """The robot's answer to a stop: `coils` were on when it arrived and are off now."""
+
+    host_ms: int
+    now_ms: int
+    state: str
+    code: int
+    coils: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """The robot's answer to a request for its status."""
+
+    host_ms: int
+    state: str
+    code: int
+    uptime_ms: int
+    lease_ms: int
+    step: int
+    coils: tuple[str, ...]
+    supply_mv: int
+    current_ma: int
+    board_degc: float
+    dropped: int
+    overruns: int
+
+
+Record = Telemetry | Event | Stopped
+
+
+def telemetry_of(payload: bytes, host_ms: int) -> Telemetry:
+    """Return the record of that payload; ValueError when it is none."""
+    row = messages.TELEMETRY.unpack(payload)
+    if len(row.channels) % 4:
+        raise ValueError(f"telemetry: {len(row.channels)} bytes of channels, must be a multiple of 4")
+    words = struct.unpack(f"<{'Hh' * (len(row.channels) // 4)}", row.channels)
+    return Telemetry(
+        host_ms,
+        row.now_ms,
+        state_name(row.state),
+        row.step,
+        row.supply_mv,
+        row.current_ma,
+        row.board_decidegc / 10,
+        words[0::2],
+        tuple([decidegc / 10 for decidegc in words[1::2]]),
+    )
+
+
+def event_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Event:
+    """Return the record of that payload; ValueError when it is none."""
+    row = messages.EVENT.unpack(payload)
+    name = messages.EVENTS[row.event] if row.event < len(messages.EVENTS) else f"event {row.event}"
+    return Event(host_ms, row.now_ms, name, row.code, row.step, coil_name(row.channel, labels), row.value)
+
+
+def stopped_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Stopped:
+    """Return the record of that payload; ValueError when it is none."""
+    row = messages.STOPPED.unpack(payload)
+    return Stopped(host_ms, row.now_ms, state_name(row.state), row.code, coil_names(row.coils, labels))
+
+
+def status_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Status:
+    """Return the record of that payload; ValueError when it is none."""
+    row = messages.STATUS.unpack(payload)
+    return Status(
+        host_ms=host_ms,
+        state=state_name(row.state),
+        code=row.code,
+        uptime_ms=row.uptime_ms,
+        lease_ms=row.lease_ms,
+        step=row.step,
+        coils=coil_names(row.coils, labels),
+        supply_mv=row.supply_mv,
+        current_ma=row.current_ma,
+        board_degc=row.board_decidegc / 10,
+        dropped=row.dropped,
+        overruns=row.overruns,
+    )
+
+
+def state_name(state: int) -> str:
+    """Return the state's name, or its number when this version has no name for it."""
+    return messages.STATES[state] if state < len(messages.STATES) else f"state {state}"
+
+
+def coil_name(channel: int, labels: tuple[str, ...]) -> str | None:
+    """Return the label of a channel number, or None when it names no channel."""
+    return labels[channel] if channel < len(labels) else None
+
+
+def coil_names(mask: int, labels: tuple[str, ...]) -> tuple[str, ...]:
+    """Return the labels of a mask; before the labels are known, the channel numbers."""
+    names = labels or tuple(str(channel) for channel in range(32))
+    return tuple(name for i, name in enumerate(names) if mask >> i & 1)
+
+
+def as_json(record: Any) -> dict[str, Any]:
+    """Return the record's fields by name, as they stand in logs and on `--json`."""
+    return asdict(record)

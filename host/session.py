@@ -1,0 +1,256 @@
+"""One conversation with a robot, without a port and without a clock: bytes and times in, bytes and records out.
+
+`receive` takes whatever arrived and never raises; `poll` returns what to write and raises what became of the session
+(Silent, NotOurs, Mismatch, LinkLost, RobotFault). Whoever owns the line calls both, and again at `wake_ms`.
+
+    session = Session(number, now_ms)
+    line.write(session.poll(now_ms))
+    for record in session.receive(line.read(), now_ms): ...
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from host.errors import DictionaryMismatch, LinkLost, Mismatch, NotOurs, Refused, RobotFault, Silent, SoftrigError
+from host.handshake import Handshake, differing_lines, profile_text
+from host.profile import Profile, read_profile
+from host.records import Record, Status, Telemetry, event_of, status_of, stopped_of, telemetry_of
+from protocol import codes, frames, messages
+from protocol.link import Link
+
+KEEPALIVE_MS = 100
+STOP_AGAIN_MS = 100
+TICK_MS = 20  # while something waits to be acknowledged
+IDLE_TICK_MS = 250
+PROBE_MS = 500  # of silence, where there should be none, before hello is said again
+SILENT_MS = 2000
+
+
+class Session:
+    """The host's end of a session. `number` names it; the robot keeps it apart from others by it."""
+
+    def __init__(self, number: int, now_ms: int) -> None:
+        self.number = number
+        self.profile: Profile | None = None
+        self.dictionary = b""
+        self.answers: dict[int, Refused | Status | None] = {}
+        self.holds_lease = False
+        self.clock_ms: int | None = None  # robot's clock minus host's, at the quickest frame seen
+        self.last: Telemetry | None = None
+        self._handshake = Handshake(number, now_ms)
+        self._link = Link()
+        self._trouble: SoftrigError | None = None
+        self._asked: dict[int, str] = {}
+        self._stopping = False
+        self._stop_due_ms = 0
+        self._period_ms = 0
+        self._heard_ms = self._written_ms = self._probed_ms = now_ms
+        self._bytes_in = self._bytes_out = self._damaged_before = 0
+
+    @property
+    def open(self) -> bool:
+        """Return whether the robot is known, and orders may be given."""
+        return self.profile is not None
+
+    @property
+    def identity(self) -> Any:
+        """Return the robot's `identity`, or None before it has answered."""
+        return self._handshake.identity
+
+    @property
+    def viewer(self) -> bool:
+        """Return whether another session holds the lease, so that this one may watch and stop only."""
+        return self.open and self.identity.role == messages.VIEWER
+
+    @property
+    def _expecting(self) -> bool:
+        """Return whether the robot has something to say: an answer, or its telemetry."""
+        return bool(self._asked or self._period_ms)
+
+    def request(self, message: messages.Message, now_ms: int, **values: Any) -> int:
+        """Queue an order and return its number, under which `answers` will hold what the robot said."""
+        if self.viewer:
+            raise Refused(message.name, codes.LEASE_HELD)
+        seq: int = self._link.send(message.number, message.pack(**values), now_ms)
+        if not self._expecting:
+            self._heard_ms = now_ms
+        self._asked[seq] = message.name
+        if message is messages.SUBSCRIBE:
+            self._period_ms = values["period_ms"]
+        return seq
+
+    def room(self) -> int:
+        """Return how many more orders may be queued now."""
+        return int(self._link.room())
+
+    def stop(self, now_ms: int) -> None:
+        """Have the stop pattern sent until `stopped` answers it; works before and without a hello."""
+        self._stopping, self._stop_due_ms = True, now_ms
+
+    def receive(self, data: bytes, now_ms: int) -> list[Record]:
+        """Take received bytes; return the records they completed."""
+        self._bytes_in += len(data)
+        records = []
+        for received in self._link.receive(data, now_ms):
+            self._heard_ms = now_ms
+            record = self._take(received.kind, received.payload, now_ms)
+            if record is not None:
+                records.append(record)
+        return records
+
+    def poll(self, now_ms: int) -> bytes:
+        """Return the bytes to write now, or raise what ended the session."""
+        out = self._stop_bytes(now_ms)
+        if not self._stopping:
+            self._check(now_ms)
+        if not self.open:
+            out += b"" if self._stopping else self._ask(now_ms)
+        elif not self.viewer:
+            if self.holds_lease and now_ms - self._written_ms >= KEEPALIVE_MS:
+                self._link.acknowledge()
+            out += self._link.poll(now_ms)
+        if out:
+            self._written_ms = now_ms
+            self._bytes_out += len(out)
+        return out
+
+    def wake_ms(self, now_ms: int) -> int:
+        """Return when `poll` must be called again at the latest, if nothing arrives before."""
+        due = [now_ms + (IDLE_TICK_MS if self._link.idle() else TICK_MS)]
+        if self._stopping:
+            due.append(self._stop_due_ms)
+        elif not self.open:
+            due.append(self._handshake.due_ms())
+        if self.holds_lease:
+            due.append(self._written_ms + KEEPALIVE_MS)
+        return max(min(due), now_ms + 1)
+
+    def robot_ms(self, now_ms: int) -> int | None:
+        """Return the robot's clock at the host's `now_ms`, or None before any telemetry or event."""
+        return None if self.clock_ms is None else now_ms + self.clock_ms
+
+    def statistics(self) -> dict[str, int | None]:
+        """Return what the line did: bytes both ways, frames resent, repeated, missed, damaged, round trip [ms]."""
+        link = self._link
+        return {
+            "bytes_sent": self._bytes_out,
+            "bytes_received": self._bytes_in,
+            "frames_resent": link.resent,
+            "frames_repeated": link.duplicates,
+            "telemetry_missed": link.missed,
+            "frames_damaged": link.decoder.dropped - self._damaged_before,
+            "round_trip_ms": link.rtt_ms,
+        }
+
+    def _take(self, kind: int, payload: bytes, now_ms: int) -> Record | None:
+        """Take one delivered frame; a payload that does not fit its message is dropped like a damaged frame."""
+        try:
+            return self._understood(kind, payload, now_ms)
+        except ValueError:
+            self._link.decoder.dropped += 1
+            return None
+
+    def _understood(self, kind: int, payload: bytes, now_ms: int) -> Record | None:
+        labels = self.profile.labels if self.profile else ()
+        if kind == messages.TELEMETRY.number:
+            self.last = telemetry_of(payload, now_ms)
+            self._compare(self.last.now_ms, now_ms)
+            return self.last
+        if kind == messages.EVENT.number:
+            event = event_of(payload, labels, now_ms)
+            self._compare(event.now_ms, now_ms)
+            self.holds_lease = self.holds_lease and event.event not in ("tripped", "disarmed")
+            return event
+        if kind == messages.STOPPED.number:
+            self._stopping = self.holds_lease = False
+            return stopped_of(payload, labels, now_ms)
+        if kind < frames.UNSEEDED_BELOW:
+            self._introduce(kind, payload, now_ms)
+        else:
+            self._answered(kind, payload, labels, now_ms)
+        return None
+
+    def _answered(self, kind: int, payload: bytes, labels: tuple[str, ...], now_ms: int) -> None:
+        answer: Refused | Status | None = None
+        if kind == messages.OK.number:
+            seq = messages.OK.unpack(payload).request
+            self.holds_lease = self.holds_lease or self._asked.get(seq) == messages.ARM.name
+        elif kind == messages.REFUSED.number:
+            row = messages.REFUSED.unpack(payload)
+            seq = row.request
+            coil = labels[row.channel] if row.channel < len(labels) else None
+            answer = Refused(self._asked.get(seq, "an order"), row.code, row.value, row.limit, coil)
+        elif kind == messages.STATUS.number:
+            seq = messages.STATUS.unpack(payload).request
+            answer = status_of(payload, labels, now_ms)
+        else:
+            return
+        if self._asked.pop(seq, None) is not None:
+            self.answers[seq] = answer
+
+    def _introduce(self, kind: int, payload: bytes, now_ms: int) -> None:
+        """Take an unseeded frame: the answers to hello and dictionary, or to the probe of a silent line."""
+        if not self.open:
+            self._handshake.take(kind, payload, now_ms)
+            if self._handshake.complete:
+                self._begin()
+        elif kind == messages.IDENTITY.number:
+            identity = messages.IDENTITY.unpack(payload)
+            if identity.session == self.number and identity.boot != self.identity.boot:
+                self._trouble = _restarted(identity.state)
+
+    def _begin(self) -> None:
+        """Check that the robot means by every message what we mean, and seal all further frames with its seed."""
+        self.dictionary = self._handshake.dictionary
+        differing = differing_lines(self.dictionary)
+        try:
+            if differing:
+                raise DictionaryMismatch(differing)
+            self.profile = read_profile(profile_text(self.dictionary))
+        except Mismatch as mismatch:
+            self._trouble = mismatch
+            return
+        self._damaged_before = self._link.decoder.dropped
+        self._link.reset(self.identity.dictionary_crc)
+
+    def _ask(self, now_ms: int) -> bytes:
+        try:
+            for kind, payload in self._handshake.poll(now_ms):
+                self._link.post(kind, payload)
+        except Silent:
+            if self._bytes_in and self.identity is None:
+                raise NotOurs("something answers, but no robot of ours: check the port and its baud rate") from None
+            raise
+        return bytes(self._link.poll(now_ms))
+
+    def _check(self, now_ms: int) -> None:
+        """Raise what became of the session; ask a robot that has fallen silent whether it is still there."""
+        if self._trouble:
+            raise self._trouble
+        if not (self.open and self._expecting):
+            return
+        silence_ms = now_ms - self._heard_ms
+        if silence_ms >= SILENT_MS or self._link.broken:
+            figures = ", ".join(f"{name} {value}" for name, value in self.statistics().items())
+            raise LinkLost(f"the robot has fallen silent ({figures}); it switches its coils off by itself")
+        if silence_ms >= PROBE_MS and now_ms - self._probed_ms >= PROBE_MS:
+            self._probed_ms = now_ms
+            self._link.post(messages.HELLO.number, messages.HELLO.pack(version=frames.VERSION, session=self.number))
+
+    def _stop_bytes(self, now_ms: int) -> bytes:
+        if not self._stopping or now_ms < self._stop_due_ms:
+            return b""
+        self._stop_due_ms = now_ms + STOP_AGAIN_MS
+        return frames.STOP * 3
+
+    def _compare(self, robot_ms: int, now_ms: int) -> None:
+        """Keep the difference of the clocks from the frame that was quickest on its way."""
+        difference = robot_ms - now_ms
+        self.clock_ms = difference if self.clock_ms is None else max(self.clock_ms, difference)
+
+
+def _restarted(state: int) -> SoftrigError:
+    if state == messages.TRIPPED:
+        return RobotFault(codes.WATCHDOG)
+    return LinkLost("the robot restarted in the middle of the session; its coils are off")

@@ -1,0 +1,207 @@
+"""A robot of the tests' own, made of protocol.link alone, and a line to it on a virtual clock.
+
+It answers as the wire's table says and does what its test tells it to, so that the host can be tried against answers
+that the real firmware never gives.
+"""
+
+from __future__ import annotations
+
+import json
+import random
+import struct
+from pathlib import Path
+
+from host.errors import LinkLost
+from protocol import frames, messages
+from protocol.link import Link
+
+PROFILE = (Path(__file__).parents[1] / "firmware/robots/circular.json").read_bytes()
+LABELS = [channel["label"] for channel in json.loads(PROFILE)["channels"]]
+STEP_MS = 5
+PAGE = 200
+
+
+class FakeRobot:
+    """Answers every request with ok, runs a program of `program_ms`, and does what its attributes say."""
+
+    def __init__(self, profile: bytes = PROFILE, dictionary: bytes | None = None) -> None:
+        self.dictionary = dictionary or messages.dictionary(profile)
+        self.seed = frames.crc32(self.dictionary)
+        self.link = Link(self.seed)
+        self.boot = 1
+        self.role = messages.HOLDER
+        self.state = messages.IDLE
+        self.session = 0
+        self.refuse: dict[str, tuple[int, int, int, int]] = {}  # message -> code, channel, value, limit
+        self.deaf = False
+        self.program_ms = 500
+        self.ending = (messages.FINISHED, 0, 255, 0)
+        self.orders: list[tuple] = []  # (time, name, payload's fields)
+        self.code = bytearray()
+        self.stops = 0
+        self.duty = [0] * len(LABELS)
+        self.period_ms = 0
+        self.supply_mv = 2000
+        self._until: dict[int, int] = {}
+        self._ends_ms: int | None = None
+        self._due_ms = 0
+        self._finder = frames.StopFinder()
+
+    def step(self, now_ms: int, data: bytes) -> bytes:
+        """Take the bytes that arrived, go on to `now_ms`, return the bytes to send."""
+        if self.deaf:
+            return b""
+        if self._finder.feed(data):
+            self._stopped(now_ms)
+        for received in self.link.receive(data, now_ms):
+            self._serve(received, now_ms)
+        self._go_on(now_ms)
+        return self.link.poll(now_ms)
+
+    def tell(self, event: int, code: int, channel: int, value: int, now_ms: int) -> None:
+        """Send an event."""
+        payload = messages.EVENT.pack(event=event, code=code, step=3, channel=channel, value=value, now_ms=now_ms)
+        self.link.send(messages.EVENT.number, payload, now_ms)
+
+    def restart(self) -> None:
+        """Forget everything, as after a reset."""
+        self.boot += 1
+        self.session, self.state, self.period_ms = 0, messages.IDLE, 0
+        self.link.reset(self.seed)
+
+    def _serve(self, received, now_ms: int) -> None:
+        message = messages.by_number(received.kind)
+        order = message.unpack(received.payload)
+        self.orders.append((now_ms, message.name, order))
+        if message is messages.HELLO:
+            self._hello(order)
+        elif message is messages.DICTIONARY:
+            page = self.dictionary[order.offset : order.offset + PAGE]
+            self._post(messages.DICTIONARY_PAGE, offset=order.offset, text=page)
+        elif message.name in self.refuse:
+            code, channel, value, limit = self.refuse[message.name]
+            self._send(
+                messages.REFUSED, now_ms, request=received.seq, code=code, channel=channel, value=value, limit=limit
+            )
+        elif message is messages.STATUS_REQUEST:
+            self._status(received.seq, now_ms)
+        else:
+            self._obey(message, order, now_ms)
+            self._send(messages.OK, now_ms, request=received.seq)
+
+    def _obey(self, message, order, now_ms: int) -> None:
+        if message is messages.ARM:
+            self.state = messages.ARMED
+        elif message is messages.DISARM:
+            self.state, self.duty = messages.IDLE, [0] * len(LABELS)
+            self.tell(messages.DISARMED, 0, 255, 0, now_ms)
+        elif message is messages.SUBSCRIBE:
+            self.period_ms = order.period_ms
+        elif message is messages.FIRE:
+            for i in range(len(LABELS)):
+                if order.coils >> i & 1:
+                    self.duty[i], self._until[i] = order.duty_permille, now_ms + order.hold_ms
+        elif message is messages.CODE:
+            self.code += order.code
+        elif message is messages.START:
+            self.state, self._ends_ms = messages.RUNNING, now_ms + self.program_ms
+            self.tell(messages.STARTED, 0, 255, 0, now_ms)
+
+    def _go_on(self, now_ms: int) -> None:
+        for i, until_ms in list(self._until.items()):
+            if now_ms >= until_ms:
+                self.duty[i] = 0
+                del self._until[i]
+        if self._ends_ms is not None and now_ms >= self._ends_ms:
+            self._ends_ms = None
+            event = self.ending[0]
+            self.state = messages.TRIPPED if event == messages.TRIP else messages.ARMED
+            self.tell(*self.ending, now_ms)
+        if self.period_ms and now_ms >= self._due_ms:
+            self._due_ms = now_ms + self.period_ms
+            self._telemetry(now_ms)
+
+    def _telemetry(self, now_ms: int) -> None:
+        words = [word for duty in self.duty for word in (duty, 250 + duty)]
+        self._post(
+            messages.TELEMETRY, now_ms=now_ms, state=self.state, step=0, supply_mv=self.supply_mv, current_ma=0,
+            board_decidegc=231, channels=struct.pack(f"<{'Hh' * len(LABELS)}", *words),
+        )  # fmt: skip
+
+    def _hello(self, order) -> None:
+        if order.session != self.session:
+            self.session, self.period_ms = order.session, 0
+            self.link.reset(self.seed)
+        self._post(
+            messages.IDENTITY, session=order.session, boot=self.boot, dictionary_crc=self.seed,
+            dictionary_bytes=len(self.dictionary), version=frames.VERSION, state=self.state, role=self.role,
+            firmware=b"softrig 0.1.0",
+        )  # fmt: skip
+
+    def _status(self, seq: int, now_ms: int) -> None:
+        self._send(
+            messages.STATUS, now_ms, request=seq, state=self.state, code=0, uptime_ms=now_ms, lease_ms=0, step=0,
+            coils=0, supply_mv=self.supply_mv, current_ma=12, board_decidegc=231, dropped=0, overruns=0,
+        )  # fmt: skip
+
+    def _stopped(self, now_ms: int) -> None:
+        on = sum(1 << i for i, duty in enumerate(self.duty) if duty)
+        self.stops += 1
+        self.state, self.duty, self._ends_ms = messages.TRIPPED, [0] * len(LABELS), None
+        self._post(messages.STOPPED, state=self.state, code=101, coils=on, now_ms=now_ms)
+
+    def _send(self, message, now_ms: int, **values) -> None:
+        self.link.send(message.number, message.pack(**values), now_ms)
+
+    def _post(self, message, **values) -> None:
+        self.link.post(message.number, message.pack(**values))
+
+
+class FakeLine:
+    """A line to a fake robot: virtual time, steps of 5 ms, seeded loss of whole writes, and a cable to cut."""
+
+    observer = None
+
+    def __init__(self, robot, loss: float = 0.0, seed: int = 1) -> None:
+        self.robot = robot
+        self.now_ms = 1000
+        self.cut = False
+        self.closed = False
+        self.at: dict[int, object] = {}  # time -> what happens then
+        self.written = b""
+        self._loss = loss
+        self._random = random.Random(seed)
+        self._outward = self._inward = b""
+
+    def now_s(self) -> float:
+        return self.now_ms / 1000
+
+    def write(self, data: bytes) -> None:
+        self._check()
+        self.written += data
+        self._outward += self._damaged(data)
+
+    def read(self, until_s: float) -> bytes:
+        while not self._inward and self.now_ms < until_s * 1000 - 1e-6:
+            self._check()
+            self.now_ms += STEP_MS
+            for due in [due for due in self.at if due <= self.now_ms]:
+                self.at.pop(due)()
+            data, self._outward = self._outward, b""
+            self._inward += self._damaged(self.robot.step(self.now_ms, data))
+        data, self._inward = self._inward, b""
+        return data
+
+    def close(self) -> None:
+        self.closed = True
+
+    def _check(self) -> None:
+        if self.cut:
+            raise LinkLost("fake: the line broke")
+
+    def _damaged(self, data: bytes) -> bytes:
+        """Lose whole frames and flip bytes of others, as the seed will have it."""
+        pieces = data.split(b"\x00")
+        kept = [piece for piece in pieces[:-1] if self._random.random() >= self._loss]
+        flipped = [piece[:-1] + b"\x5a" if self._random.random() < self._loss / 4 else piece for piece in kept]
+        return b"".join(piece + b"\x00" for piece in flipped) + pieces[-1]

@@ -1,0 +1,271 @@
+"""A host's session with a robot: over good lines, bad lines and lines that end, on a virtual clock."""
+
+import random
+from itertools import pairwise
+
+import pytest
+
+from host.errors import (
+    DictionaryMismatch,
+    LinkLost,
+    Mismatch,
+    NotOurs,
+    Refused,
+    RobotFault,
+    Silent,
+)
+from host.records import Event, Telemetry
+from host.robot import Robot
+from protocol import codes, frames, messages
+from tests.fake_robot import LABELS, PROFILE, FakeLine, FakeRobot
+
+
+@pytest.fixture
+def peer():
+    return FakeRobot()
+
+
+@pytest.fixture
+def line(peer):
+    return FakeLine(peer)
+
+
+def connected(line) -> Robot:
+    robot = Robot(line)
+    robot.connect()
+    return robot
+
+
+def test_a_session_learns_the_robot_from_the_robot(line):
+    robot = connected(line)
+
+    assert robot.profile.labels == tuple(LABELS)
+    assert robot.dictionary.endswith(PROFILE)
+    assert robot.info()["firmware"] == "softrig 0.1.0"
+
+
+def test_connecting_takes_less_than_a_tenth_of_a_second_on_a_quick_line(line):
+    connected(line)
+
+    assert line.now_ms - 1000 <= 100
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_every_order_arrives_exactly_once_although_a_fifth_of_the_frames_is_lost(peer, seed):
+    robot = connected(FakeLine(peer, loss=0.2, seed=seed))
+    robot.arm()
+
+    for hold_ms in range(100, 130):
+        robot.fire(["A", "C"], duty_permille=600, hold_ms=hold_ms)
+
+    fired = [order.hold_ms for _, name, order in peer.orders if name == "fire"]
+    assert fired == list(range(100, 130))
+    assert robot.statistics()["frames_resent"] > 0
+
+
+def test_a_robot_with_another_table_of_messages_is_refused_and_the_lines_are_named():
+    table, profile = messages.dictionary(PROFILE).split(b"\n\n", 1)
+    other = table.replace(b"hold_ms:H", b"hold_ms:I") + b"\n\n" + profile
+    robot = Robot(FakeLine(FakeRobot(dictionary=other)))
+
+    with pytest.raises(DictionaryMismatch) as caught:
+        robot.connect()
+
+    assert caught.value.exit_code == 5
+    assert caught.value.lines == [
+        "- 20 fire coils:I duty_permille:H hold_ms:H",
+        "+ 20 fire coils:I duty_permille:H hold_ms:I",
+    ]
+
+
+def test_a_robot_of_another_protocol_version_is_refused(peer, line):
+    peer._hello = lambda order: peer._post(messages.NAK, kind=1, code=codes.OTHER_VERSION, version=2)
+
+    with pytest.raises(Mismatch, match="version 2 of the protocol, this host 1: update the softrig"):
+        connected(line)
+
+
+def test_a_profile_that_lacks_a_limit_is_a_mismatch():
+    robot = Robot(FakeLine(FakeRobot(profile=PROFILE.replace(b"trip_degc", b"trip_degf"))))
+
+    with pytest.raises(Mismatch, match="trip_degc"):
+        robot.connect()
+
+
+def test_a_refusal_says_what_was_asked_what_is_allowed_and_what_to_do(peer, line):
+    peer.refuse["fire"] = (codes.DUTY_LIMIT, 2, 900, 800)
+    robot = connected(line)
+
+    with pytest.raises(Refused) as caught:
+        robot.fire(["C"], duty_permille=900, hold_ms=100)
+
+    assert caught.value.exit_code == 4
+    assert str(caught.value).startswith(
+        "fire (coil C) refused: R04 The duty is above the coil's limit. 900 permille, at most 800."
+    )
+
+
+def test_a_port_where_nobody_answers_is_silent(peer, line):
+    peer.deaf = True
+
+    with pytest.raises(Silent, match="is the robot switched on"):
+        connected(line)
+
+    assert line.now_ms - 1000 == pytest.approx(3000, abs=10)
+
+
+def test_something_that_talks_otherwise_is_not_ours(line):
+    line.robot.step = lambda now_ms, data: b"$GPGGA,123519,4807.038,N\r\n"
+
+    with pytest.raises(NotOurs, match="check the port and its baud rate") as caught:
+        connected(line)
+
+    assert caught.value.exit_code == 3
+
+
+def test_random_bytes_never_raise(peer, line):
+    robot, noise = connected(line), random.Random(7)
+    robot.subscribe(50)
+
+    for _ in range(200):
+        robot._session.receive(noise.randbytes(100), robot.now_ms())
+
+    assert robot.status().state == "idle"
+
+
+def test_the_host_keeps_its_lease_alive_at_least_every_tenth_of_a_second(peer, line):
+    robot = connected(line)
+    robot.arm()
+    heard = []
+    receive = peer.link.receive
+    peer.link.receive = lambda data, now_ms: (heard.append(now_ms) if data else None, receive(data, now_ms))[1]
+
+    list(robot.listen(2000))
+
+    gaps = [later - earlier for earlier, later in pairwise(heard)]
+    assert max(gaps) <= 105
+
+
+def test_a_session_that_holds_no_lease_sends_nothing_unasked(line):
+    robot = connected(line)
+    list(robot.listen(100))
+    before = len(line.written)
+
+    list(robot.listen(3000))
+
+    assert len(line.written) == before
+
+
+def test_a_robot_that_falls_silent_is_asked_and_then_given_up(peer, line):
+    robot = connected(line)
+    robot.subscribe(50)
+    peer.deaf = True
+    start_ms = line.now_ms
+
+    with pytest.raises(LinkLost, match="fallen silent") as caught:
+        list(robot.listen(10000))
+
+    assert caught.value.exit_code == 7
+    assert line.now_ms - start_ms == pytest.approx(2000, abs=60)
+
+
+def test_a_robot_that_restarts_is_noticed(peer, line):
+    robot = connected(line)
+    robot.subscribe(50)
+    peer.restart()
+
+    with pytest.raises(LinkLost, match="restarted"):
+        list(robot.listen(5000))
+
+
+def test_a_robot_that_was_restarted_by_its_watchdog_is_a_fault(peer, line):
+    robot = connected(line)
+    robot.subscribe(50)
+    peer.restart()
+    peer.state = messages.TRIPPED
+
+    with pytest.raises(RobotFault, match="F12"):
+        list(robot.listen(5000))
+
+
+def test_an_order_without_an_answer_ends_the_session(peer, line):
+    robot = connected(line)
+    peer.deaf = True
+
+    with pytest.raises(LinkLost, match="fallen silent"):
+        robot.arm()
+
+
+def test_telemetry_is_decoded_with_both_clocks(line):
+    robot = connected(line)
+    robot.subscribe(50)
+    robot.fire(["B"], duty_permille=600, hold_ms=500)
+
+    record = [record for record in robot.listen(200) if isinstance(record, Telemetry)][-1]
+
+    assert record.duty_permille[1] == 600
+    assert record.temperature_degc[:2] == (25.0, 85.0)
+    assert record.board_degc == 23.1
+    assert 0 <= record.host_ms - record.now_ms <= 5
+
+
+def test_a_lost_telemetry_record_is_counted(peer):
+    robot = connected(FakeLine(peer, loss=0.1, seed=3))
+    robot.subscribe(10)
+
+    received = [record for record in robot.listen(5000) if isinstance(record, Telemetry)]
+
+    assert len(received) + robot.statistics()["telemetry_missed"] == pytest.approx(500, abs=5)
+
+
+def test_a_second_host_may_watch_but_gives_no_orders_and_renews_no_lease(peer, line):
+    peer.role = messages.VIEWER
+    robot = connected(line)
+    before = len(line.written)
+
+    with pytest.raises(Refused, match="R06"):
+        robot.arm()
+    list(robot.listen(1000))
+
+    assert len(line.written) == before
+
+
+def test_a_host_waits_a_moment_for_the_lease_of_one_that_has_gone(peer, line):
+    peer.role = messages.VIEWER
+    line.at[1600] = lambda: setattr(peer, "role", messages.HOLDER)
+
+    robot = connected(line)
+
+    assert robot.info()["may_arm"]
+
+
+def test_stop_needs_no_hello(peer, line):
+    stopped = Robot(line).stop()
+
+    assert peer.stops >= 1
+    assert stopped.state == "tripped"
+    assert [name for _, name, _ in peer.orders] == []
+    assert line.written.startswith(frames.STOP * 3)
+
+
+def test_stop_is_repeated_until_it_is_answered(peer):
+    stopped = Robot(FakeLine(peer, loss=0.6, seed=2)).stop()
+
+    assert stopped.state == "tripped"
+
+
+def test_a_stop_that_nobody_answers_says_so(peer, line):
+    peer.deaf = True
+
+    with pytest.raises(Silent, match="switch the coil supply off by hand"):
+        Robot(line).stop()
+
+
+def test_events_come_once_and_in_order_over_a_bad_line(peer):
+    robot = connected(FakeLine(peer, loss=0.2, seed=4))
+    for value in range(12):
+        peer.tell(messages.STEP, 0, 255, value, 0)
+
+    values = [record.value for record in robot.listen(4000) if isinstance(record, Event)]
+
+    assert values == list(range(12))
