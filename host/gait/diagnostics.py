@@ -90,9 +90,15 @@ def exit_code(diagnostics: Iterable[Diagnostic]) -> int:
 
 
 def in_order(diagnostics: Iterable[Diagnostic]) -> tuple[Diagnostic, ...]:
-    """Return them by file, line and column, each once."""
-    unique = {(item.place, item.code): item for item in diagnostics}
-    return tuple(sorted(unique.values(), key=lambda item: (item.place.file, item.place.line, item.place.column)))
+    """Return them by file, line and column; of those with one place and code, the first."""
+    unique: dict[tuple[Place, str], Diagnostic] = {}
+    for item in diagnostics:
+        unique.setdefault((item.place, item.code), item)
+    return tuple(sorted(unique.values(), key=_by_place))
+
+
+def _by_place(item: Diagnostic) -> tuple[str, int, int, str]:
+    return item.place.file, item.place.line, item.place.column, item.code
 
 
 def did_you_mean(word: str, known: Iterable[str]) -> str:
