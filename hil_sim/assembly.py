@@ -1,0 +1,30 @@
+"""Puts a bench together from an address: robot file, body, wires and firmware image."""
+
+from hil_sim.address import Address
+from hil_sim.bench import Bench, Parts
+from hil_sim.devices.ntc import Ntc
+from hil_sim.plant import RingPlant
+from hil_sim.robotfile import RobotFile, load
+from hil_sim.worlds.image import Image
+
+
+def assemble(address: Address) -> Bench:
+    """Return the bench of an address, powered on at time 0; RobotFileError when its robot cannot be built."""
+    robot = load(address.robot, address.overrides)
+    image = Image.installed(robot.profile.read_bytes())
+    identity = f"{robot.name} {address.seed}"
+    return Bench(parts_of(robot), RingPlant(robot), image, baud=address.baud, identity=identity)
+
+
+def parts_of(robot: RobotFile) -> Parts:
+    """Return the electrical side of a robot in the order of its coils."""
+    wiring, sensors = robot.wiring, robot.sensors
+    return Parts(
+        outputs=[wiring.outputs[label] for label in robot.labels],
+        series_ohm=[wiring.series_ohm] * len(robot.labels),
+        source_ohm=wiring.source_ohm,
+        shunt_ohm=sensors.shunt_ohm,
+        supply_v=wiring.supply_v,
+        ambient_degc=robot.ground.T_amb,
+        ntc=Ntc(sensors.ntc_ohm, sensors.ntc_beta_k, sensors.ntc_pull_up_ohm),
+    )

@@ -1,0 +1,105 @@
+"""The `sim:` line: a whole bench in this process, on virtual time.
+
+The host's waiting drives the bench's clock; its own work costs no virtual time. So a run is the same on any machine,
+under any load. An interrupt from the keyboard meets the host between two events, never the firmware.
+
+    link = open_link("sim:circular?slope=10")
+    link.write(b"...")
+    data = link.read(link.now_s() + 0.1)
+"""
+
+import signal
+import threading
+import weakref
+from collections.abc import Iterator
+from contextlib import contextmanager
+from math import ceil
+from types import FrameType
+from typing import Any
+
+from hil_sim.address import parse
+from hil_sim.assembly import assemble
+from hil_sim.bench import Bench
+
+BOOTED_US = 100_000  # the robot has been on for a moment when the host finds it
+
+
+def open_link(address: str) -> "SimLink":
+    """Build the bench that an address describes and return the host's end of its serial line.
+
+    ValueError (of the address or the robot file), LookupError or OSError say in their text what is wrong.
+    """
+    bench = assemble(parse(address))
+    bench.clock.run_until(BOOTED_US)
+    return SimLink(bench)
+
+
+class SimLink:
+    """The host's end of the serial line of a bench in this process."""
+
+    def __init__(self, bench: Bench) -> None:
+        self.bench = bench
+        self._line = bench.board.uart
+        self._end = weakref.finalize(self, bench.close)
+
+    @property
+    def observer(self) -> Bench:
+        """What watches the robot from outside: `observe()` and `snapshot()`."""
+        return self.bench
+
+    def now_s(self) -> float:
+        """Return virtual time."""
+        return self.bench.clock.now_us / 1e6
+
+    def write(self, data: bytes) -> None:
+        """Put bytes on the line; they take their time from now on."""
+        if not self._end.alive:
+            raise OSError(9, "the bench is closed")
+        self.bench.board.host_write(bytes(data))
+
+    def read(self, until_s: float) -> bytes:
+        """Return bytes as soon as a device write has arrived as a whole, or what there is at `until_s`."""
+        if not self._end.alive:
+            raise OSError(9, "the bench is closed")
+        clock = self.bench.clock
+        until_us = max(clock.now_us, ceil(until_s * 1e6 - 1e-3))
+        data = self._line.host_read(clock.now_us)
+        while not data and clock.now_us < until_us:
+            wake_us = self._line.host_wake_us()
+            with self._woken_by_bytes(), _interrupts_deferred(self.bench):
+                clock.run_until(until_us if wake_us is None else min(until_us, wake_us))
+            data = self._line.host_read(clock.now_us)
+        return data
+
+    @contextmanager
+    def _woken_by_bytes(self) -> Iterator[None]:
+        self._line.sent = self.bench.clock.stop_at
+        try:
+            yield
+        finally:
+            self._line.sent = None
+
+    def close(self) -> None:
+        """End the bench; closing twice does nothing."""
+        self._end()
+
+
+@contextmanager
+def _interrupts_deferred(bench: Bench) -> Iterator[None]:
+    """Let Ctrl-C end the run at its present instant and be felt only after it: it belongs to the host."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    came: list[int] = []
+
+    def note(number: int, frame: FrameType | None) -> None:
+        came.append(number)
+        bench.clock.stop_at(0)
+
+    before: Any = signal.signal(signal.SIGINT, note)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+    if came:
+        signal.raise_signal(signal.SIGINT)

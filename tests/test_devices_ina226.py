@@ -1,0 +1,244 @@
+"""INA226 against the register description of its data sheet."""
+
+import pytest
+
+from hil_sim.clock import Clock
+from hil_sim.devices.i2c import Bus
+from hil_sim.devices.ina226 import Ina226
+
+
+class Steady:
+    """A source without ripple."""
+
+    def __init__(self) -> None:
+        self.volts = (0.0, 0.0)
+
+    def steady_v(self):
+        return self.volts
+
+    def integrals_vus(self, *window):
+        raise AssertionError("a steady source is not integrated")
+
+
+class Rig:
+    """One chip on a bus, with calibration 0x0800: current then equals the shunt reading."""
+
+    def __init__(self) -> None:
+        self.clock = Clock()
+        self.source = Steady()
+        self.chip = Ina226(0x40, self.clock, self.source)
+        self.bus = Bus([self.chip])
+        self.set(0x05, 0x0800)
+
+    def set(self, register: int, value: int) -> None:
+        self.bus.write(0x40, bytes((register, value >> 8, value & 0xFF)))
+
+    def get(self, register: int) -> int:
+        self.bus.write(0x40, bytes((register,)))
+        return int.from_bytes(self.bus.read(0x40, 2), "big")
+
+    def put(self, shunt_v: float, bus_v: float) -> None:
+        self.chip.catch_up()
+        self.source.volts = (shunt_v, bus_v)
+
+    def wait_us(self, us: int) -> None:
+        self.clock.run_until(self.clock.now_us + us)
+
+
+@pytest.fixture
+def rig() -> Rig:
+    return Rig()
+
+
+def test_registers_after_power_on_are_those_of_the_data_sheet(rig):
+    rig.set(0x00, 0x8000)
+
+    assert rig.get(0x00) == 0x4127
+    assert [rig.get(register) for register in range(1, 8)] == [0] * 7
+    assert rig.get(0xFE) == 0x5449
+    assert rig.get(0xFF) == 0x2260
+
+
+def test_shunt_and_bus_are_read_in_their_own_bits(rig):
+    rig.put(0.01, 2.0)
+
+    rig.wait_us(2200)
+
+    assert rig.get(0x01) == 4000  # 2.5 uV
+    assert rig.get(0x02) == 1600  # 1.25 mV
+
+
+def test_nothing_is_read_before_the_conversion_ends(rig):
+    rig.put(0.01, 2.0)
+
+    rig.wait_us(2199)
+    assert rig.get(0x01) == 0
+    rig.wait_us(1)
+
+    assert rig.get(0x01) == 4000
+
+
+def test_current_and_power_follow_from_the_calibration(rig):
+    rig.set(0x05, 512)
+    rig.put(0.01, 2.0)
+
+    rig.wait_us(2200)
+
+    assert rig.get(0x04) == 4000 * 512 // 2048
+    assert rig.get(0x03) == 1000 * 1600 // 20_000
+
+
+def test_current_and_power_stay_zero_without_a_calibration(rig):
+    rig.set(0x05, 0)
+    rig.put(0.01, 2.0)
+
+    rig.wait_us(10_000)
+
+    assert (rig.get(0x04), rig.get(0x03)) == (0, 0)
+
+
+def test_a_negative_shunt_voltage_is_twos_complement(rig):
+    rig.put(-0.01, 2.0)
+
+    rig.wait_us(2200)
+
+    assert rig.get(0x01) == 0x10000 - 4000
+
+
+def test_the_shunt_saturates_at_its_full_scale(rig):
+    rig.put(0.2, 2.0)
+    rig.wait_us(2200)
+    assert rig.get(0x01) == 0x7FFF
+
+    rig.put(-0.2, 2.0)
+    rig.wait_us(4400)
+
+    assert rig.get(0x01) == 0x8000
+
+
+def test_a_conversion_is_the_mean_over_its_own_window(rig):
+    rig.put(0.01, 2.0)
+
+    rig.wait_us(550)
+    rig.put(0.0, 2.0)
+    rig.wait_us(1650)
+
+    assert rig.get(0x01) == 2000  # half of the shunt's 1100 us
+
+
+def test_the_shunt_converts_before_the_bus(rig):
+    rig.put(0.01, 2.0)
+
+    rig.wait_us(1100)
+    rig.put(0.0, 0.0)
+    rig.wait_us(1100)
+
+    assert (rig.get(0x01), rig.get(0x02)) == (4000, 0)
+
+
+def test_averages_and_conversion_times_stretch_the_cycle(rig):
+    rig.put(0.01, 2.0)
+
+    rig.set(0x00, 0x4497)  # 16 averages of 332 us each
+    rig.wait_us(16 * 664 - 1)
+    assert rig.get(0x01) == 0
+    rig.wait_us(1)
+
+    assert rig.get(0x01) == 4000
+
+
+def test_a_triggered_conversion_happens_once(rig):
+    rig.put(0.01, 2.0)
+    rig.set(0x00, 0x4123)
+    rig.wait_us(2200)
+    assert rig.get(0x01) == 4000
+
+    rig.put(0.0, 2.0)
+    rig.wait_us(10_000)
+
+    assert rig.get(0x01) == 4000
+
+
+def test_in_power_down_nothing_is_converted(rig):
+    rig.set(0x00, 0x4120)
+    rig.put(0.01, 2.0)
+
+    rig.wait_us(100_000)
+
+    assert rig.get(0x01) == 0
+
+
+def test_the_ready_flag_is_cleared_by_reading_it(rig):
+    rig.wait_us(2200)
+
+    assert rig.get(0x06) & 0x08
+    assert not rig.get(0x06) & 0x08
+    rig.wait_us(2200)
+
+    assert rig.get(0x06) & 0x08
+
+
+def test_the_alert_follows_the_limit_unless_latched(rig):
+    rig.set(0x07, 3000)
+    rig.set(0x06, 0x8000)
+    rig.put(0.01, 2.0)
+    rig.wait_us(2200)
+    assert rig.chip.alert_level() == 0
+
+    rig.put(0.0, 2.0)
+    rig.wait_us(2200)
+
+    assert rig.chip.alert_level() == 1
+
+
+def test_a_latched_alert_holds_until_it_is_read(rig):
+    rig.set(0x07, 3000)
+    rig.set(0x06, 0x8001)
+    rig.put(0.01, 2.0)
+    rig.wait_us(2200)
+    rig.put(0.0, 2.0)
+    rig.wait_us(4400)
+    assert rig.chip.alert_level() == 0
+
+    assert rig.get(0x06) & 0x10
+
+    assert rig.chip.alert_level() == 1
+
+
+@pytest.mark.parametrize(
+    ("mask", "limit", "shunt_v", "bus_v"),
+    [(0x8000, 3999, 0.01, 2.0), (0x4000, 4001, 0.01, 2.0), (0x2000, 1599, 0.01, 2.0), (0x1000, 1601, 0.01, 2.0)],
+)
+def test_each_limit_is_watched_on_its_own_side(rig, mask, limit, shunt_v, bus_v):
+    rig.set(0x07, limit)
+    rig.set(0x06, mask)
+    rig.put(shunt_v, bus_v)
+
+    rig.wait_us(2200)
+
+    assert rig.chip.alert_level() == 0
+
+
+def test_the_alert_pin_can_be_turned_over(rig):
+    rig.set(0x06, 0x8002)
+
+    assert rig.chip.alert_level() == 0
+
+
+def test_looking_often_changes_nothing(rig):
+    other = Rig()
+    for chip in (rig, other):
+        chip.put(0.01, 2.0)
+    for _ in range(50):
+        other.wait_us(101)
+        other.get(0x02)
+    rig.wait_us(5050)
+
+    assert [rig.get(register) for register in range(6)] == [other.get(register) for register in range(6)]
+
+
+def test_a_missing_chip_does_not_answer(rig):
+    rig.chip.alive = False
+
+    assert rig.bus.write(0x40, b"\x00") == -1
+    assert rig.bus.read(0x40, 2) is None
