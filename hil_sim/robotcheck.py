@@ -86,7 +86,9 @@ class Check:
                 what = f"{key}: this number is kept as" if unit else f"{key} has no unit: write"
                 self._say(name, f"{what} {row.key}")
                 return
-        self._say(name, f"unknown key {key}{near(key, [row.key for row in rows])}")
+        keys = [row.key for row in rows]
+        self._meant |= {f"{name.removesuffix(key)}{match}" for match in get_close_matches(key, keys, 1)}
+        self._say(name, f"unknown key {key}{near(key, keys)}")
 
     def _standing(self, name: str, value: float, text: str) -> None:
         standing, _, source = text.partition(":")

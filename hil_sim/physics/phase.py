@@ -80,18 +80,21 @@ def settle(i: int, xi: float, T: float, B: float, L: float, coils: Coils) -> flo
     s = T - F / coils.c_F[i]
     upper, _ = ramp(s, coils.A_s[i], coils.A_f[i])
     if xi > upper:
-        return _meet(i, xi, T, B, L, coils, coils.A_s[i], coils.A_f[i], 0.0, xi)
+        return _meet(i, xi, T, B, L, coils, coils.A_s[i], coils.A_f[i], 0.0)
     lower, _ = ramp(s, coils.M_f[i], coils.M_s[i])
     if xi < lower:
-        return _meet(i, xi, T, B, L, coils, coils.M_f[i], coils.M_s[i], xi, 1.0)
+        return _meet(i, xi, T, B, L, coils, coils.M_f[i], coils.M_s[i], 1.0)
     return xi
 
 
 @kernel
 def _meet(i: int, xi: float, T: float, B: float, L: float, coils: Coils, start: float, end: float,
-          low: float, high: float) -> float:  # fmt: skip
-    """Return the fraction between `low` and `high` at which the coil lies on the ramp `start`..`end`."""
-    x = xi
+          limit: float) -> float:  # fmt: skip
+    """Return the fraction between xi and `limit` at which the coil lies on the ramp `start`..`end`."""
+    F, _ = tension(i, L, limit, coils)
+    if ramp(T + B * (limit - xi) - F / coils.c_F[i], start, end)[0] == limit:
+        return limit
+    low, high, x = min(xi, limit), max(xi, limit), xi
     for _ in range(80):
         F, slope = tension(i, L, x, coils)
         value, fall = ramp(T + B * (x - xi) - F / coils.c_F[i], start, end)
@@ -106,4 +109,4 @@ def _meet(i: int, xi: float, T: float, B: float, L: float, coils: Coils, start: 
         x -= step
         if not low < x < high:
             x = 0.5 * (low + high)
-    return min(1.0, max(0.0, x))
+    return x
