@@ -18,7 +18,6 @@ from types import FrameType
 from typing import Any
 
 from hil_sim.address import parse
-from hil_sim.assembly import assemble
 from hil_sim.bench import Bench
 
 BOOTED_US = 100_000  # the robot has been on for a moment when the host finds it
@@ -29,6 +28,8 @@ def open_link(address: str) -> "SimLink":
 
     ValueError (of the address or the robot file), LookupError or OSError say in their text what is wrong.
     """
+    from hil_sim.assembly import assemble  # noqa: PLC0415  (heavy: the compiled physics)
+
     bench = assemble(parse(address))
     bench.clock.run_until(BOOTED_US)
     return SimLink(bench)

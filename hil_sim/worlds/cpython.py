@@ -93,6 +93,7 @@ class Life:
         self._bite_at: Event | None = None
         self._bite_us = 0
         self._protests = 0
+        self._ended = False
 
     @property
     def running(self) -> bool:
@@ -120,8 +121,14 @@ class Life:
             self._resume_at.cancel()
             self._resume_at = None
 
+    def say(self, text: str) -> None:
+        """Print on the board's console."""
+        if not self._ended:
+            self._world.console.append(text)
+
     def end(self) -> None:
         """Unwind the firmware; its `finally` and `except` blocks reach no hardware any more."""
+        self._ended = True
         self.pause()
         if self._bite_at is not None:
             self._bite_at.cancel()
@@ -156,9 +163,9 @@ class Life:
             "time": time_module(self),
             "micropython": micropython_module(),
             "gc": gc_module(),
-            "sys": sys_module(world.console.append),
+            "sys": sys_module(self.say),
         }
-        modules = Modules(world.image, given, world.console.append)
+        modules = Modules(world.image, given, self.say)
         try:
             for name in RUNS:
                 modules.run(name)

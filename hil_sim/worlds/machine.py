@@ -183,8 +183,9 @@ class ADC:
 
     def __init__(self, pin: Pin | int) -> None:
         number = pin.number if isinstance(pin, Pin) else pin
-        self._channel = number - 26 if number >= 26 else number
-        if not 0 <= self._channel <= 4:
+        is_pin = isinstance(pin, Pin) or number >= 26
+        self._channel = number - 26 if is_pin else number
+        if not 0 <= self._channel <= (3 if is_pin else 4):
             raise ValueError("Pin doesn't have ADC capabilities")
 
     def read_u16(self) -> int:
