@@ -122,6 +122,10 @@ class Robot:
         self._order(messages.DISARM)
         self._session.holds_lease = False
 
+    def leave_armed(self) -> None:
+        """Go without disarming: the robot disarms itself when its lease runs out."""
+        self._session.holds_lease = False
+
     def clear(self) -> None:
         """Leave the tripped state once its cause is gone."""
         self._order(messages.CLEAR)

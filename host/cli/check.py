@@ -1,0 +1,31 @@
+"""`softrig check`: a script against the limits of its robot, before anything moves."""
+
+from __future__ import annotations
+
+import click
+
+from host.cli.connection import connected
+from host.cli.options import json_option, robot_option
+from host.cli.output import emit
+from host.gait.checker import check
+from host.gait.compiler import compile_script
+from host.gait.diagnostics import GaitError
+from host.gait.script import load
+
+
+@click.command("check")
+@click.argument("script", type=click.Path())
+@robot_option(required=False)
+@click.option("-p", "--param", "params", multiple=True, metavar="NAME=VALUE", help="Give a parameter another value.")
+@json_option
+def command(script: str, robot: str | None, params: tuple[str, ...], as_json: bool) -> None:
+    """Prove a script against the limits of its robot: worst-case time, heat and current.
+
+    The limits are asked of the robot itself; nothing is uploaded and nothing moves.
+    """
+    tree = load(script)
+    with connected(robot or f"sim:{tree.robot_name()}", watch_only=True) as face:
+        report = check(compile_script(tree, face.profile, params))
+    if not report.sound:
+        raise GaitError(report.diagnostics)
+    emit(as_json, report.as_dict(), report.lines())

@@ -1,0 +1,20 @@
+"""`softrig disarm`: all coils off, lease returned."""
+
+from __future__ import annotations
+
+import click
+
+from host.cli.connection import connected
+from host.cli.options import json_option, robot_option
+from host.cli.output import emit
+
+
+@click.command("disarm")
+@robot_option()
+@json_option
+def command(robot: str, as_json: bool) -> None:
+    """Switch all coils off and return the lease."""
+    with connected(robot) as face:
+        face.disarm()
+        status = face.status()
+    emit(as_json, {"state": status.state}, [status.state])

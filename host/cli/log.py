@@ -1,0 +1,67 @@
+"""`softrig log`: what is in a log, as table or as picture; also in one whose writer was killed."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import click
+
+from host.cli.options import json_option
+from host.cli.output import emit, note
+from host.errors import BadRequest
+from host.logbook import read_log
+from host.view import draw_run
+
+
+@click.group("log")
+def command() -> None:
+    """Look into logs: info, export, plot."""
+
+
+@command.command("info")
+@click.argument("file", type=click.Path(path_type=Path))
+@json_option
+def info(file: Path, as_json: bool) -> None:
+    """Say what is in a log."""
+    fields = read_log(file).info()
+    emit(as_json, fields, _lines(fields))
+
+
+@command.command("export")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--topic", default="telemetry", show_default=True, help="telemetry, events, stops, scenes or bytes.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE.csv", help="Default: stdout.")
+def export(file: Path, topic: str, output: Path | None) -> None:
+    """Write one topic of a log as CSV."""
+    log = read_log(file)
+    if output is None:
+        log.write_csv(sys.stdout, topic)
+        return
+    try:
+        with output.open("w", encoding="utf-8", newline="") as table:
+            rows = log.write_csv(table, topic)
+    except OSError as error:
+        raise BadRequest(f"cannot write {output}: {error.strerror}") from error
+    note(f"{rows} rows: {output}")
+
+
+@command.command("plot")
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, metavar="FILE.svg")
+def plot(file: Path, output: Path) -> None:
+    """Draw the run that a log holds."""
+    draw_run(read_log(file).recording(), output)
+    note(f"picture: {output}")
+
+
+def _lines(fields: dict[str, Any]) -> Iterator[str]:
+    whole = "complete" if fields["complete"] else "cut off; what is whole was read"
+    yield f"{fields['file']}: {fields['duration_s']:.2f} s, {whole}"
+    for topic, rows in fields["rows"].items():
+        yield f"  {topic:<12}{rows} rows"
+    yield f"  {'events':<12}{', '.join(f'{count} {name}' for name, count in fields['events'].items()) or 'none'}"
+    for name, size in fields["attachments"].items():
+        yield f"  attached    {name}, {size} bytes"

@@ -1,0 +1,53 @@
+"""Options that many commands share, and quantities as an operator writes them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import click
+
+F = TypeVar("F", bound=Callable[..., Any])
+ROBOT_HELP = "sim:NAME, the path of a port, or socket://HOST:PORT."
+
+
+def robot_option(required: bool = True) -> Callable[[F], F]:
+    """Add --robot, which SOFTRIG_ROBOT can give too."""
+    help_text = ROBOT_HELP if required else f"{ROBOT_HELP} Without it: a bench with the script's robot."
+    return click.option(
+        "--robot", metavar="ADDRESS", envvar="SOFTRIG_ROBOT", show_envvar=True, required=required, help=help_text
+    )
+
+
+def json_option(command: F) -> F:
+    """Add --json; errors are then told on stdout as well."""
+    return click.option(
+        "--json", "as_json", is_flag=True, callback=_remember, is_eager=True, help="One JSON object per line on stdout."
+    )(command)
+
+
+def time_ms(text: str) -> int:
+    """Return the milliseconds that `500ms`, `0.5 s` or `0.5` stand for."""
+    return _measured(text, {"s": 1000, "ms": 1})
+
+
+def duty_permille(text: str) -> int:
+    """Return the permille that `60%` or `60` stand for."""
+    return _measured(text, {"%": 10})
+
+
+def _measured(text: str, factors: dict[str, int]) -> int:
+    """Return a number in the smallest unit; without a unit it is in the first one."""
+    match = re.fullmatch(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*([a-z%]*)\s*", str(text))
+    if match is None or match[2] not in ("", *factors):
+        raise click.BadParameter(f"{text!r}: write a number and {' or '.join(factors)}")
+    return round(float(match[1]) * (factors[match[2]] if match[2] else next(iter(factors.values()))))
+
+
+def _remember(ctx: click.Context, param: click.Parameter, value: bool) -> bool:
+    """Tell the group's error line that --json was given."""
+    state = ctx.find_root().obj
+    if value and isinstance(state, dict):
+        state["json"] = True
+    return value

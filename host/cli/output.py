@@ -1,0 +1,42 @@
+"""What commands print: with --json one object per line on stdout, else lines for a reader."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from typing import Any
+
+import click
+
+from host.errors import SoftrigError
+
+
+def emit(as_json: bool, fields: Any, lines: Iterable[str]) -> None:
+    """Print `fields` as one line of JSON, or `lines` as they are."""
+    if as_json:
+        click.echo(json_line(fields))
+        return
+    for line in lines:
+        click.echo(line)
+
+
+def note(text: str) -> None:
+    """Print a line for the reader that is no result."""
+    click.echo(text, err=True)
+
+
+def json_line(fields: Any) -> str:
+    """Return `fields` on one line, names in their order, numbers as they are."""
+    return json.dumps(fields, ensure_ascii=False, allow_nan=False, default=float)
+
+
+def error_line(error: SoftrigError) -> str:
+    """Return an error as a line of JSON."""
+    fields: dict[str, Any] = {"error": type(error).__name__, "message": str(error), "exit_code": error.exit_code}
+    row = getattr(error, "row", None)
+    if row is not None:
+        fields["code"] = row.name
+    diagnostics = getattr(error, "diagnostics", None)
+    if diagnostics:
+        fields["diagnostics"] = [item.as_dict() for item in diagnostics]
+    return json_line(fields)

@@ -1,0 +1,101 @@
+"""`softrig run`: a script from check to report."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any
+
+import click
+
+from host.cli.options import json_option, robot_option
+from host.cli.output import emit, json_line, note
+from host.cli.progress import shown
+from host.gait.checker import check
+from host.gait.compiler import Compiled, compile_script
+from host.gait.diagnostics import GaitError
+from host.gait.script import load
+from host.link import open_link, wall_s
+from host.log import LogWriter
+from host.report import Facts, lines, report
+from host.robot import Robot
+from host.run import Ending, Keeper, run, upload
+from host.view import check_pictures, draw_run
+
+
+@click.command("run")
+@click.argument("script", type=click.Path())
+@robot_option(required=False)
+@click.option("-p", "--param", "params", multiple=True, metavar="NAME=VALUE", help="Give a parameter another value.")
+@click.option("--dry-run", is_flag=True, help="Check and upload, but do not arm: nothing moves.")
+@click.option("--log", "log_path", type=click.Path(path_type=Path), metavar="FILE.mcap", help="Record everything.")
+@click.option("--plot", "plot_path", type=click.Path(path_type=Path), metavar="FILE.svg", help="Draw the run.")
+@json_option
+def command(
+    script: str,
+    robot: str | None,
+    params: tuple[str, ...],
+    dry_run: bool,
+    log_path: Path | None,
+    plot_path: Path | None,
+    as_json: bool,
+) -> None:
+    """Check a script, upload it, arm, run, watch, disarm and report.
+
+    Ctrl-C sends stop, waits for the robot's answer and says what it was.
+    """
+    tree = load(script)
+    address = robot or f"sim:{tree.robot_name()}"
+    if plot_path:
+        check_pictures(plot_path)
+    with LogWriter(log_path) if log_path else nullcontext() as log:
+        link = open_link(address)
+        keeper = Keeper(log, link.observer if log_path or plot_path else None)
+        with Robot(link, keeper) as face:
+            face.connect()
+            keeper.name_coils(face.profile.labels)
+            keeper.recording.title = f"{Path(script).name} on {address}"
+            compiled = compile_script(tree, face.profile, params)
+            _attach(log, compiled, face, address)
+            ending, took_s = _run(face, compiled, dry_run, as_json)
+            facts = Facts(compiled, address, face.info(), face.statistics(), link.observer, took_s)
+            fields = report(ending, keeper.recording, facts)
+        if log:
+            log.attach("report.json", json_line(fields).encode(), "application/json")
+    emit(as_json, fields, lines(fields))
+    if plot_path and keeper.recording.telemetry:
+        draw_run(keeper.recording, plot_path)
+        note(f"picture: {plot_path}")
+    error = ending.error() if ending else None
+    if error:
+        raise error
+
+
+def _run(face: Robot, compiled: Compiled, dry_run: bool, as_json: bool) -> tuple[Ending | None, float]:
+    """Hold the script against the robot's limits, then run it; return how it ended and the seconds it took."""
+    verdict = check(compiled)
+    if not verdict.sound:
+        raise GaitError(verdict.diagnostics)
+    begun_s = wall_s()
+    with shown(len(compiled.code), verdict.longest_ms / 1000, quiet=as_json) as progress:
+        if dry_run:
+            upload(face, compiled.program, progress)
+            return None, wall_s() - begun_s
+        ending = run(face, compiled.program, progress)
+    return ending, wall_s() - begun_s
+
+
+def _attach(log: LogWriter | None, compiled: Compiled, face: Robot, address: str) -> None:
+    """Put into the log what the run can be understood and repeated from."""
+    if log is None:
+        return
+    versions: dict[str, Any] = {
+        "script": compiled.script.main.name,
+        "address": address,
+        "parameters": {name: str(value) for name, value in compiled.params.items()},
+        **face.info(),
+    }
+    for file in compiled.script.files:
+        log.attach(file.name, "\n".join(file.lines).encode())
+    log.attach("dictionary.txt", face.dictionary)
+    log.attach("versions.json", json_line(versions).encode(), "application/json")

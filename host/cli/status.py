@@ -1,0 +1,42 @@
+"""`softrig status`: the state of a robot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict
+
+import click
+
+from host.cli.connection import connected
+from host.cli.options import json_option, robot_option
+from host.cli.output import emit
+from host.records import Status
+from protocol import codes
+
+
+@click.command("status")
+@robot_option()
+@json_option
+def command(robot: str, as_json: bool) -> None:
+    """Ask a robot for its state, its last fault, its supply and its line."""
+    with connected(robot) as face:
+        status = face.status()
+        line = face.statistics()
+    emit(as_json, _fields(status, line), _lines(status, line))
+
+
+def _fields(status: Status, line: dict[str, int | None]) -> dict[str, object]:
+    row = codes.row(status.code)
+    return {**asdict(status), "code": row.name if row else None, "link": line}
+
+
+def _lines(status: Status, line: dict[str, int | None]) -> Iterator[str]:
+    yield f"{status.state}, coils on: {' '.join(status.coils) or 'none'}"
+    row = codes.row(status.code)
+    if row:
+        yield f"  last fault  {row.name} {row.cause} {row.todo}"
+    yield f"  supply      {status.supply_mv / 1000:.2f} V, {status.current_ma} mA; board {status.board_degc:.1f} C"
+    yield f"  lease       {f'{status.lease_ms} ms left' if status.lease_ms else 'free'}"
+    yield f"  up          {status.uptime_ms / 1000:.1f} s, {status.overruns} late control steps"
+    trip = "-" if line["round_trip_ms"] is None else line["round_trip_ms"]
+    yield f"  line        {status.dropped} frames damaged on their way to the robot, round trip {trip} ms"

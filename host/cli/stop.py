@@ -1,0 +1,23 @@
+"""`softrig stop`: everything off, without asking who is there."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+import click
+
+from host.cli.options import json_option, robot_option
+from host.cli.output import emit
+from host.link import open_link
+from host.robot import Robot
+
+
+@click.command("stop")
+@robot_option()
+@json_option
+def command(robot: str, as_json: bool) -> None:
+    """Switch everything off at once, from any state; latched until `softrig clear`."""
+    with Robot(open_link(robot)) as face:
+        stopped = face.stop()
+    coils = [f"coil {coil}" if coil.isalpha() else f"channel {coil}" for coil in stopped.coils]
+    emit(as_json, asdict(stopped), [f"stopped; {', '.join(coils) or 'no coil'} on before, none now"])

@@ -1,0 +1,136 @@
+"""The log of a session: an MCAP file with every byte both ways, telemetry, events and what an observer saw.
+
+Messages are JSON with named fields and a schema each; times are the host's clock, and both clocks stand in every row.
+A chunk is closed at 64 KiB, once a second, and at every fault, and handed to the system at once: a host that is killed
+loses less than a second. Attached are the script, the robot's dictionary and the versions of everything.
+
+    with LogWriter("run.mcap") as log:
+        robot = Robot(link, log)
+"""
+
+from __future__ import annotations
+
+import json
+from base64 import b64encode
+from pathlib import Path
+from typing import Any
+
+from mcap.writer import Writer
+
+from host.errors import BadRequest
+from host.recording import Scene
+from host.records import Event, Record, Telemetry, as_json
+
+CHUNK_BYTES = 64 * 1024
+CHUNK_MS = 1000
+NS_PER_MS = 1_000_000
+
+NUMBER, TEXT = {"type": "number"}, {"type": "string"}
+BY_COIL = {"type": "object", "additionalProperties": NUMBER}
+COORDINATES = {"type": "array", "items": {"type": "array", "items": NUMBER}}
+TOPICS: dict[str, dict[str, Any]] = {
+    "bytes": {
+        "host_ms": NUMBER,
+        "now_ms": {"type": ["number", "null"]},
+        "direction": {"type": "string", "enum": ["in", "out"]},
+        "data": {"type": "string", "contentEncoding": "base64"},
+    },
+    "telemetry": {
+        **dict.fromkeys(("host_ms", "now_ms", "step", "supply_mv", "current_ma", "board_degc"), NUMBER),
+        "state": TEXT,
+        "duty_permille": BY_COIL,
+        "temperature_degc": BY_COIL,
+    },
+    "events": {
+        **dict.fromkeys(("host_ms", "now_ms", "code", "step", "value"), NUMBER),
+        "event": TEXT,
+        "coil": {"type": ["string", "null"]},
+    },
+    "stops": {
+        **dict.fromkeys(("host_ms", "now_ms", "code"), NUMBER),
+        "state": TEXT,
+        "coils": {"type": "array", "items": TEXT},
+    },
+    "scenes": {
+        "host_ms": NUMBER,
+        "t_s": NUMBER,
+        "hub": {"type": "array", "items": NUMBER},
+        "nodes": COORDINATES,
+        "coils": {"type": "object"},
+        "observed": {"type": "object"},
+    },
+}
+
+
+class LogWriter:
+    """Writes one log; BadRequest when the file cannot be made. `labels` name the coils once the robot is known."""
+
+    def __init__(self, path: str | Path) -> None:
+        self.labels: tuple[str, ...] = ()
+        try:
+            self._file = open(path, "wb")  # noqa: SIM115  # closed by close()
+        except OSError as error:
+            raise BadRequest(f"cannot write the log {path}: {error.strerror}") from error
+        self._writer = Writer(self._file, chunk_size=CHUNK_BYTES)
+        self._writer.start(library="softrig")
+        self._channels = {topic: self._channel(topic, fields) for topic, fields in TOPICS.items()}
+        self._chunk_ms: int | None = None
+
+    def __enter__(self) -> LogWriter:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def line(self, direction: str, data: bytes, host_ms: int, robot_ms: int | None) -> None:
+        """Keep bytes that went "out" or came "in"."""
+        row = {"host_ms": host_ms, "now_ms": robot_ms, "direction": direction, "data": b64encode(data).decode()}
+        self._add("bytes", host_ms, row)
+
+    def record(self, record: Record) -> None:
+        """Keep what the robot told; a fault closes the chunk."""
+        row = as_json(record)
+        if isinstance(record, Telemetry):
+            row["duty_permille"] = dict(zip(self.labels, record.duty_permille, strict=False))
+            row["temperature_degc"] = dict(zip(self.labels, record.temperature_degc, strict=False))
+            self._add("telemetry", record.host_ms, row)
+        elif isinstance(record, Event):
+            self._add("events", record.host_ms, row)
+            if record.code:
+                self._flush(record.host_ms)
+        else:
+            self._add("stops", record.host_ms, row)
+            self._flush(record.host_ms)
+
+    def scene(self, scene: Scene) -> None:
+        """Keep what an observer saw."""
+        self._add("scenes", scene["host_ms"], scene)
+
+    def attach(self, name: str, data: bytes, media_type: str = "text/plain") -> None:
+        """Attach a file: the script, the dictionary, the versions, the report."""
+        self._writer.add_attachment(create_time=0, log_time=0, name=name, media_type=media_type, data=data)
+        self._file.flush()
+
+    def close(self) -> None:
+        """End the file; closing twice does nothing."""
+        if not self._file.closed:
+            self._writer.finish()  # type: ignore[no-untyped-call]
+            self._file.close()
+
+    def _channel(self, topic: str, properties: dict[str, Any]) -> int:
+        schema = {"type": "object", "title": f"softrig.{topic}", "properties": properties}
+        number = self._writer.register_schema(f"softrig.{topic}", "jsonschema", json.dumps(schema).encode())
+        return int(self._writer.register_channel(topic, "json", number))
+
+    def _add(self, topic: str, host_ms: int, row: dict[str, Any]) -> None:
+        time_ns = host_ms * NS_PER_MS
+        data = json.dumps(row, separators=(",", ":")).encode()
+        self._writer.add_message(self._channels[topic], log_time=time_ns, data=data, publish_time=time_ns)
+        if self._chunk_ms is None:
+            self._chunk_ms = host_ms
+        elif host_ms - self._chunk_ms >= CHUNK_MS:
+            self._flush(host_ms)
+
+    def _flush(self, host_ms: int) -> None:
+        self._writer.flush()  # type: ignore[no-untyped-call]
+        self._chunk_ms = host_ms

@@ -1,0 +1,127 @@
+"""One run of a compiled script on one robot: upload, arm, start, watch to its end, disarm.
+
+ending = run(robot, compiled.program, keeper)
+ending.result                        # "done", "guard", "timeout", "fault", ...
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from host.errors import LinkLost, RobotFault, ScriptFailed, SoftrigError
+from host.log import LogWriter
+from host.recording import Recording
+from host.records import Event, Record, Telemetry
+from host.robot import Robot
+from protocol import codes, program
+
+TELEMETRY_MS = 50
+COOL_MS = 2 * TELEMETRY_MS  # after the end, so that the record ends with every coil off
+
+
+class Progress(Protocol):
+    """Whoever shows how far a run has come."""
+
+    def __call__(self, stage: str, done: float) -> None:
+        """Show that of `stage` ("upload", "run") this many bytes or seconds are done."""
+
+
+class Keeper:
+    """Keeps what passes during a run: in a Recording, and in a log if there is one."""
+
+    def __init__(self, log: LogWriter | None = None, observer: Any = None) -> None:
+        self.recording = Recording(())
+        self._log = log
+        self._observer = observer
+
+    def name_coils(self, labels: tuple[str, ...]) -> None:
+        """Take the labels of the coils, once the robot has told them."""
+        self.recording.labels = labels
+        if self._log:
+            self._log.labels = labels
+
+    def line(self, direction: str, data: bytes, host_ms: int, robot_ms: int | None) -> None:
+        """Keep bytes that went "out" or came "in"."""
+        if self._log:
+            self._log.line(direction, data, host_ms, robot_ms)
+
+    def record(self, record: Record) -> None:
+        """Keep what the robot told, and beside each telemetry what the observer sees."""
+        self.recording.note(record)
+        if self._log:
+            self._log.record(record)
+        if isinstance(record, Telemetry) and self._observer is not None:
+            self.recording.look(self._observer, record.host_ms)
+            if self._log:
+                self._log.scene(self.recording.scenes[-1])
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How a run ended; `event` is the robot's last word, `lost` why there is none."""
+
+    result: str
+    event: Event | None = None
+    lost: LinkLost | None = None
+
+    def error(self) -> SoftrigError | None:
+        """Return what the caller should raise, or None when the script ran to its end."""
+        if self.event is None or self.result == "done":
+            return self.lost
+        if self.result in ("guard", "timeout", "cancelled"):
+            return ScriptFailed(f"the script ended early: {_cause(self.event)}")
+        if self.result == "lease":
+            return LinkLost("the robot heard nothing from this host for its lease and switched its coils off")
+        return RobotFault(self.event.code, self.event.value, self.event.coil)
+
+
+def run(robot: Robot, code: bytes, progress: Progress) -> Ending:
+    """Run a program (header and code) on a robot that is connected; a line that breaks on the way ends it too."""
+    upload(robot, code, progress)
+    robot.subscribe(TELEMETRY_MS)
+    robot.arm()
+    robot.start()
+    try:
+        event = _watched(robot, progress)
+        if event.event in ("finished", "aborted"):
+            robot.disarm()
+    except LinkLost as lost:
+        return Ending("link lost", None, lost)
+    return Ending(_result(event), event)
+
+
+def upload(robot: Robot, code: bytes, progress: Progress) -> None:
+    """Send a program to a robot that is connected; nothing moves."""
+    header, body = code[: program.HEADER_BYTES], code[program.HEADER_BYTES :]
+    robot.upload(header, body, lambda taken: progress("upload", taken))
+
+
+def _watched(robot: Robot, progress: Progress) -> Event:
+    """Watch the running program and return the event that ended it; a moment more is recorded, with all coils off."""
+    start_ms = robot.now_ms()
+    last = None
+    for record in robot.watch():
+        progress("run", (record.host_ms - start_ms) / 1000)
+        last = record
+    for _ in robot.listen(COOL_MS):
+        pass
+    if not isinstance(last, Event):
+        raise LinkLost("the robot ended the program without a word")
+    return last
+
+
+def _result(event: Event) -> str:
+    """Return the word for an ending."""
+    if event.event == "finished":
+        return "done"
+    if event.event == "aborted":
+        return "timeout" if event.code == codes.WAIT_TIMEOUT else "cancelled"
+    if event.event == "disarmed":
+        return "lease" if event.code == codes.LEASE_EXPIRED else "cancelled"
+    return {codes.GUARD: "guard", codes.STOP: "stopped"}.get(event.code, "fault")
+
+
+def _cause(event: Event) -> str:
+    row = codes.row(event.code)
+    return f"{row.name} {row.cause} {row.todo}" if row else f"it was {event.event}"
