@@ -138,7 +138,7 @@ def test_pulses_of_the_same_mean_power_hold_the_same_fraction():
     length=st.lists(st.floats(0.0085, 0.022), min_size=1, max_size=40),
     dt=st.sampled_from([1e-4, 1e-3, 5e-3]),
 )
-def test_electrical_energy_is_stored_latent_or_lost_to_a_millionth(power, length, dt):
+def test_electrical_energy_is_stored_latent_or_lost_to_rounding(power, length, dt):
     coils = coils_of(ring_coil(), 1)
     state, L = at_rest(coils, length[0])
 
@@ -147,7 +147,7 @@ def test_electrical_energy_is_stored_latent_or_lost_to_a_millionth(power, length
         coil.advance(state, dt, np.array([P]), L, coils)
 
     kept = coil.stored(state, coils) + coil.latent(state, coils) + state.E_lost
-    assert kept[0] == pytest.approx(state.E_in[0], rel=1e-6, abs=1e-12)
+    assert kept[0] == pytest.approx(state.E_in[0], rel=1e-9, abs=1e-12)
 
 
 def test_the_heat_lost_is_the_integral_of_the_excess_temperature():

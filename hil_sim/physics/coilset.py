@@ -97,7 +97,22 @@ class CoilState(NamedTuple):
 
 
 def coils_of(numbers: CoilNumbers, count: int, T_amb: float = 25.0) -> Coils:
-    """Return the constants of `count` coils of one kind in air of `T_amb` [degC], equations (C1) to (C3)."""
+    r"""Return the constants of coils of one kind, equations (C1) to (C3).
+
+    Parameters
+    ----------
+    numbers : CoilNumbers
+        Material and winding [SI]
+    count : int
+        Number of coils [1]
+    T_amb : float
+        Temperature of the air [degC]
+
+    Returns
+    -------
+    Coils
+        Constants of the coils [SI]
+    """
     p = numbers
     rate = p.d**4 / (8 * p.D**3 * p.n)
     stretch = pi * p.D**2 * p.n / p.d
@@ -113,12 +128,36 @@ def coils_of(numbers: CoilNumbers, count: int, T_amb: float = 25.0) -> Coils:
 
 
 def joined(*sets: Coils) -> Coils:
-    """Return one set of coils that holds those of all `sets` in their order."""
+    r"""Return one set of coils that holds those of all the others in their order.
+
+    Parameters
+    ----------
+    sets : Coils
+        Constants of coils of different kinds [SI]
+
+    Returns
+    -------
+    Coils
+        Constants of all coils [SI]
+    """
     return Coils(*(np.concatenate(columns) for columns in zip(*sets, strict=True)))
 
 
 def cold(coils: Coils, L: Array) -> CoilState:
-    """Return the state of coils that have lain at ambient temperature at the lengths `L` [m], all martensite."""
+    r"""Return the state of coils that have lain at ambient temperature, all martensite; `coil.measure` completes it.
+
+    Parameters
+    ----------
+    coils : Coils
+        Constants of the coils [SI]
+    L : array (n,)
+        Length between the attachments [m]
+
+    Returns
+    -------
+    CoilState
+        State with force and resistance still 0 [SI]
+    """
     count = coils.T_amb.size
     zeros = [np.zeros(count) for _ in range(5)]
     return CoilState(coils.T_amb.copy(), np.ones(count), np.array(L, dtype=float), *zeros)
