@@ -43,6 +43,8 @@ class Compiled:
 def compile_script(script: Script, profile: Profile, overrides: Sequence[str] = ()) -> Compiled:
     """Return the program, or raise GaitError with everything that is wrong; limits are the checker's part."""
     problems = Problems(script.files, script.found)
+    if not all(file.readable for file in script.files):
+        problems.raise_any()
     expansion = expand(script, profile, overrides, problems)
     problems.raise_any()
     code = encode(expansion.plan)

@@ -56,10 +56,11 @@ def declare_defs(script: Script, scope: Scope) -> dict[str, tree.Define]:
     for node in _all(script, tree.Define):
         if node.name.text in defs:
             scope.problems.add(node.name.place, "E161", f"`{node.name.text}` is defined twice")
-        names = [parameter.text for parameter in node.parameters]
+        names: set[str] = set()
         for parameter in node.parameters:
-            if names.count(parameter.text) > 1:
+            if parameter.text in names:
                 scope.problems.add(parameter.place, "E161", f"`{parameter.text}` is declared twice")
+            names.add(parameter.text)
         defs[node.name.text] = node
     return defs
 

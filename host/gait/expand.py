@@ -8,24 +8,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from host.gait import tree, units
-from host.gait.conditions import condition
+from host.gait import orders, tree, units
 from host.gait.declare import check_head, declare_defs, declare_params
 from host.gait.diagnostics import Problems, did_you_mean
-from host.gait.plan import Delay, Fire, Guard, Loop, Op, Step, Wait
+from host.gait.plan import Loop, Op, Step, Wait
 from host.gait.scope import CoilSet, Scope, Value
 from host.gait.script import Script
+from host.gait.syntax import code_part
 from host.gait.timeline import TooLarge, duration_ms, together
 from host.gait.tree import Place, Statement
 from host.profile import Profile
-from protocol import program
 
 STATEMENTS_MAX = 50_000
-WAIT_MAX_MS = 24 * 3600 * 1000
-FIRE_MAX_MS = 0xFFFF
 COUNT_MAX = 0xFFFF
-CUTOFF_MAX_DECIDEGC = 0x7FFF
-CHOICES = {"abort": program.ABORT, "continue": program.CONTINUE}
 
 
 @dataclass(frozen=True)
@@ -83,19 +78,22 @@ class _Expander:
             raise TooLarge
         match node:
             case tree.Fire():
-                return self._fire(node, where)
+                return orders.fire(node, where.scope, self._step(node.place, where))
             case tree.Wait():
-                return self._wait(node, where)
+                return orders.wait(node, where.scope, self._step(node.place, where))
+            case tree.WaitUntil() if where.together:
+                self.problems.add(node.place, "E143", "a wait for a condition cannot stand in a together")
+                return []
             case tree.WaitUntil():
-                return self._wait_until(node, where)
+                return orders.wait_until(node, where.scope, self._step(node.place, where))
             case tree.Repeat():
                 return self._repeat(node, where)
             case tree.Together():
                 return self._together(node, where)
             case tree.Call():
                 return self._call(node, where)
-            case tree.Guard():
-                return self._guard(node, where)
+            case tree.Guard() if where.top:
+                return orders.guard(node, where.scope)
             case tree.Broken():
                 return self.block(node.body, replace(where, top=False))
         if not where.top:
@@ -111,89 +109,6 @@ class _Expander:
             arguments = dict.fromkeys((parameter.text for parameter in define.parameters), None)
             self.block(define.body, Where(scope.inner(arguments), defs=(name,), top=False))
         self.steps = steps
-
-    def _fire(self, node: tree.Fire, where: Where) -> list[Op]:
-        scope = where.scope
-        self._once(node.clauses)
-        if not node.coils:
-            self.problems.add(node.place, "E130", "which coils?", "name them after `fire`")
-        mask = scope.coils(node.coils)
-        duty = self._clause(node, "at", scope, units.SHARE, 1, 1000)
-        time_ms = self._clause(node, "for", scope, units.TIME, 1, FIRE_MAX_MS)
-        cutoff = self._clause(node, "until", scope, units.TEMPERATURE, 1, CUTOFF_MAX_DECIDEGC)
-        overlap_ms = self._clause(node, "overlap", scope, units.TIME, 0, FIRE_MAX_MS) or 0
-        ramp_ms = self._clause(node, "ramp", scope, units.TIME, 0, FIRE_MAX_MS) or 0
-        for word, code, form in (("at", "E132", "at 60 %"), ("for", "E133", "for 600 ms")):
-            if node.clause(word) is None:
-                what = "duty" if word == "at" else "time"
-                self.problems.add(node.place, code, f"fire has no {what}", f"add `{form}`")
-        if not mask or duty is None or time_ms is None or not self._fits(node, time_ms, overlap_ms, ramp_ms):
-            return []
-        step = self._step(node.place, where)
-        fire = Fire(mask, duty, time_ms, cutoff or 0, ramp_ms, step, node)
-        return [fire, Delay(time_ms - overlap_ms, step)] if overlap_ms < time_ms else [fire]
-
-    def _clause(self, node: tree.Fire, word: str, scope: Scope, kind: str, least: int, most: int) -> int | None:
-        clause = node.clause(word)
-        return None if clause is None else scope.measured(clause.value, kind, least, most)
-
-    def _once(self, clauses: Sequence[tree.Clause | tree.Otherwise]) -> None:
-        seen: set[str] = set()
-        for clause in clauses:
-            word = clause.word if isinstance(clause, tree.Clause) else "else"
-            if word in seen:
-                self.problems.add(clause.place, "E111", f"`{word}` is given twice")
-            seen.add(word)
-
-    def _fits(self, node: tree.Fire, time_ms: int, overlap_ms: int, ramp_ms: int) -> bool:
-        for word, part_ms in (("overlap", overlap_ms), ("ramp", ramp_ms)):
-            clause = node.clause(word)
-            if clause is not None and part_ms > time_ms:
-                message = f"the {word} of {part_ms} ms is longer than the fire of {time_ms} ms"
-                self.problems.add(clause.place, "E134", message)
-                return False
-        return True
-
-    def _wait(self, node: tree.Wait, where: Where) -> list[Op]:
-        if node.time is None:
-            self.problems.add(node.place, "E140", "wait for how long?", "write `wait 500 ms` or `wait until ...`")
-            return []
-        time_ms = where.scope.measured(node.time, units.TIME, 1, WAIT_MAX_MS)
-        return [Delay(time_ms, self._step(node.place, where))] if time_ms else []
-
-    def _wait_until(self, node: tree.WaitUntil, where: Where) -> list[Op]:
-        self._once(node.clauses)
-        if where.together:
-            self.problems.add(node.place, "E143", "a wait for a condition cannot stand in a together")
-        tested = condition(node.condition, where.scope)
-        timeout_ms, otherwise = self._timeout(node, where.scope), self._otherwise(node)
-        if where.together or tested is None or timeout_ms is None or otherwise is None:
-            return []
-        return [Wait(tested, timeout_ms, otherwise, self._step(node.place, where), node)]
-
-    def _timeout(self, node: tree.WaitUntil, scope: Scope) -> int | None:
-        for clause in node.clauses:
-            if isinstance(clause, tree.Clause):
-                return scope.measured(clause.value, units.TIME, 1, WAIT_MAX_MS)
-        self.problems.add(node.place, "E141", "wait has no timeout", "add `timeout 4 s`")
-        return None
-
-    def _otherwise(self, node: tree.WaitUntil) -> int | None:
-        for clause in node.clauses:
-            if isinstance(clause, tree.Otherwise):
-                if clause.choice.text in CHOICES:
-                    return CHOICES[clause.choice.text]
-                near = did_you_mean(clause.choice.text, CHOICES)
-                self.problems.add(clause.place, "E142", "else what? write `else continue` or `else abort`", near)
-                return None
-        self.problems.add(node.place, "E142", "wait has no else", "add `else continue` or `else abort`")
-        return None
-
-    def _guard(self, node: tree.Guard, where: Where) -> list[Op]:
-        if not where.top:
-            self.problems.add(node.place, "E112", "`guard` belongs at the top level of the script")
-        tested = condition(node.condition, where.scope)
-        return [Guard(tested, node)] if tested else []
 
     def _repeat(self, node: tree.Repeat, where: Where) -> list[Op]:
         count = self._count(node, where.scope)
@@ -255,7 +170,8 @@ class _Expander:
         for step in reversed(self.steps[-8:]):
             if step.place == place and step.calls == where.calls:
                 return step.number
-        self.steps.append(Step(len(self.steps) + 1, place, self._line(place).strip(), where.calls))
+        text = code_part(self._line(place)).strip()
+        self.steps.append(Step(len(self.steps) + 1, place, text, where.calls))
         return len(self.steps)
 
     def _line(self, place: Place) -> str:

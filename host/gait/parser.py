@@ -65,20 +65,20 @@ def parse_file(text: str, name: str) -> tuple[File, list[Diagnostic]]:
     lines = text.replace("\r\n", "\n").split("\n")
     found = syntax.unreadable(lines, name, LINES_MAX, LINE_MAX)
     if found:
-        return File(name, (), (), tuple(lines)), found
+        return File(name, (), (), tuple(lines), readable=False), found
     readable = list(lines)
     while len(found) < REPORTS_MAX:
         try:
             parsed = grammar().parse("\n".join(readable) + "\n", start="file")
         except (UnexpectedInput, BadIndent) as error:
-            diagnostic = syntax.say(error, readable, lines, name)
+            diagnostic = syntax.say(error, lines, name)
             found.append(diagnostic)
-            if not _set_aside(readable, diagnostic):
+            if isinstance(error, BadIndent) or not _set_aside(readable, diagnostic):
                 break
             continue
         statements = cast(tuple[tree.Statement, ...], Builder(name).transform(parsed))
         return File(name, statements, tuple(_comments(lines, name)), tuple(lines)), found
-    return File(name, (), (), tuple(lines)), found
+    return File(name, (), (), tuple(lines), readable=False), found
 
 
 def parse_value(text: str, name: str) -> Expression:
@@ -89,17 +89,31 @@ def parse_value(text: str, name: str) -> Expression:
     try:
         return cast(Expression, Builder(name).transform(grammar().parse(text, start="value")))
     except UnexpectedInput as error:
-        raise GaitError([syntax.say(error, [text], [text], name)]) from None
+        raise GaitError([syntax.say(error, [text], name)]) from None
 
 
 def _set_aside(lines: list[str], diagnostic: Diagnostic) -> bool:
-    """Replace the line that `diagnostic` names by a mark that can be read; False if that cannot help."""
+    """Make the line that `diagnostic` names readable: shifted to its place or replaced; False if nothing helps."""
     at = diagnostic.place.line - 1
-    if diagnostic.code in ("E105", "E114") or not 0 <= at < len(lines) or BROKEN in lines[at]:
+    if not 0 <= at < len(lines) or BROKEN in lines[at]:
         return False
-    heads = syntax.next_indent(lines, at) > syntax.indent(lines[at])
-    lines[at] = " " * syntax.indent(lines[at]) + BROKEN + (":" if heads else "")
+    opens = syntax.next_indent(lines, at) > syntax.indent(lines[at])
+    if diagnostic.code == "E105" and (opens or not lines[at].rstrip().endswith(":")):
+        _shift_left(lines, at)
+    else:
+        lines[at] = " " * syntax.indent(lines[at]) + BROKEN + (":" if opens else "")
     return True
+
+
+def _shift_left(lines: list[str], at: int) -> None:
+    """Move a block that is indented for no reason back to the column of the statement above it."""
+    above = next((line for line in reversed(lines[:at]) if syntax.holds_statement(line)), "")
+    deep = syntax.indent(lines[at])
+    excess = deep - syntax.indent(above)
+    for number in range(at, len(lines)):
+        if syntax.holds_statement(lines[number]) and syntax.indent(lines[number]) < deep:
+            break
+        lines[number] = lines[number][min(excess, syntax.indent(lines[number])) :]
 
 
 def _comments(lines: list[str], name: str) -> Iterator[Comment]:

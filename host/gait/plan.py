@@ -19,6 +19,10 @@ class Step:
     text: str
     calls: tuple[Place, ...] = ()
 
+    def __str__(self) -> str:
+        places = [self.place, *reversed(self.calls)]
+        return f"{self.text} ({', called from '.join(f'{place.file}:{place.line}' for place in places)})"
+
 
 @dataclass(frozen=True, slots=True)
 class Fire:

@@ -56,10 +56,15 @@ def indent(line: str) -> int:
     return len(line) - len(line.lstrip(" "))
 
 
+def holds_statement(line: str) -> bool:
+    """Return whether there is more on a line than blanks and a comment."""
+    return bool(line.strip()) and not line.lstrip().startswith("#")
+
+
 def next_indent(lines: list[str], at: int) -> int:
     """Return the indentation of the next line that holds a statement, or 0."""
     for line in lines[at + 1 :]:
-        if line.strip() and not line.lstrip().startswith("#"):
+        if holds_statement(line):
             return indent(line)
     return 0
 
@@ -82,30 +87,31 @@ def unreadable(lines: list[str], name: str, lines_max: int, line_max: int) -> li
             found.append(_at(name, number, line.index("\t") + 1, "E106", "a tab in the indentation", line))
     first = next((number for number, line in enumerate(lines, 1) if line.strip() and line.lstrip()[0] != "#"), 0)
     if not found and first and indent(lines[first - 1]):
-        found.append(_at(name, first, 1, "E105", "the first statement is indented", lines[first - 1]))
+        line = lines[first - 1]
+        found.append(_at(name, first, indent(line) + 1, "E105", "the first statement is indented", line))
     return found
 
 
-def say(error: UnexpectedInput | BadIndent, readable: list[str], lines: list[str], name: str) -> Diagnostic:
-    """Return the diagnostic for what the parser met in `readable`, quoting `lines` as they were written."""
+def say(error: UnexpectedInput | BadIndent, lines: list[str], name: str) -> Diagnostic:
+    """Return the diagnostic for what the parser met, quoting `lines` as they were written."""
     if isinstance(error, BadIndent):
         return _say_indent(error, lines, name)
     if isinstance(error, UnexpectedCharacters):
         return _say_character(error, lines, name)
     assert isinstance(error, UnexpectedToken)
-    return _Reader(error, readable, lines, name).say()
+    return _Reader(error, lines, name).say()
 
 
 class _Reader:
     """Puts one unexpected token into words."""
 
-    def __init__(self, error: UnexpectedToken, readable: list[str], lines: list[str], name: str) -> None:
+    def __init__(self, error: UnexpectedToken, lines: list[str], name: str) -> None:
         token: Token = error.token
         self.kind = token.type
         self.text = str(token)
         self.ends = self.kind in ("_NL", "$END", "_DEDENT")
         self.accepts = set(error.accepts or error.expected)
-        self.lines, self.readable, self.name = lines, readable, name
+        self.lines, self.name = lines, name
         self.line, self.column = token.line or len(lines), token.column or 1
         if self.kind == "$END":
             self.line = max((n for n, line in enumerate(lines, 1) if line.strip()), default=1)
@@ -123,7 +129,9 @@ class _Reader:
     def _block(self) -> Diagnostic | None:
         if self.kind == "_INDENT":
             line = self._indented_line()
-            return self._at("E105", "this line is indented, but opens no block above", line, 1, self.lines[line - 1])
+            source = self.lines[line - 1]
+            column, under = indent(source) + 1, code_part(source).strip()
+            return self._at("E105", "this line is indented, but the line above opens no block", line, column, under)
         if "_INDENT" in self.accepts:
             line = self._line_above()
             head = self.lines[line - 1].strip()
@@ -193,11 +201,11 @@ class _Reader:
         return self.lines[self.line - 1][: self.column - 1].rstrip()
 
     def _indented_line(self) -> int:
-        return next(n for n in range(self.line + 1, len(self.lines) + 1) if _holds_statement(self.lines[n - 1]))
+        return next(n for n in range(self.line + 1, len(self.lines) + 1) if holds_statement(self.lines[n - 1]))
 
     def _line_above(self) -> int:
         last = self.line if self.kind == "$END" else self.line - 1
-        return next((n for n in range(last, 0, -1) if _holds_statement(self.lines[n - 1])), 1)
+        return next((n for n in range(last, 0, -1) if holds_statement(self.lines[n - 1])), 1)
 
     def _word(self, code: str, message: str, help: str) -> Diagnostic:
         line = self.lines[self.line - 1]
@@ -212,15 +220,13 @@ class _Reader:
         return Diagnostic(place, code, message, help, self.lines[line - 1])
 
 
-def _holds_statement(line: str) -> bool:
-    return bool(line.strip()) and not line.lstrip().startswith("#")
-
-
 def _say_indent(error: BadIndent, lines: list[str], name: str) -> Diagnostic:
     line = lines[error.line - 1]
     if error.deep:
-        return _at(name, error.line, 1, "E114", "blocks are nested too deeply", line)
-    return _at(name, error.line, 1, "E105", "this line steps back to a column where no block began", line)
+        return _at(name, error.line, error.indent + 1, "E114", "blocks are nested too deeply", line)
+    return _at(
+        name, error.line, error.indent + 1, "E105", "this line steps back to a column where no block began", line
+    )
 
 
 def _say_character(error: UnexpectedCharacters, lines: list[str], name: str) -> Diagnostic:

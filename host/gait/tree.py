@@ -240,12 +240,13 @@ class Comment:
 
 @dataclass(frozen=True, slots=True)
 class File:
-    """One source file: its statements, its comments and its lines as written."""
+    """One source file: its statements, its comments and its lines as written; not `readable`: it has no tree."""
 
     name: str
     statements: tuple[Statement, ...]
     comments: tuple[Comment, ...]
     lines: tuple[str, ...]
+    readable: bool = True
 
     def line(self, number: int) -> str:
         """Return the source line of that number, or an empty text."""

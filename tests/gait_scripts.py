@@ -1,0 +1,84 @@
+"""Scripts for tests: a robot with round numbers, and the shortest way from text to what is asked about it."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from host.gait.checker import check
+from host.gait.compiler import compile_script
+from host.gait.diagnostics import GaitError
+from host.gait.script import load, loads
+from host.profile import read_profile
+from protocol.program import disassemble
+
+ROOT = Path(__file__).parents[1]
+HEAD = "gait 1\nrobot round\n"
+
+ROUND = {
+    "format": 1,
+    "robot": "round",
+    "supply_mv": 2000,
+    "channels": [{"label": label, "kind": "sma", "chip": 96, "output": i} for i, label in enumerate("ABCDEFGH")],
+    "groups": [["front", "A B"], ["even", "A C E G"]],
+    "coil": {
+        "duty_max_permille": 900, "hold_max_ms": 4000, "on_max_ms": 6000, "rest_ms": 2000, "heat_budget_mj": 600,
+        "heat_leak_ms": 3000, "trip_degc": 120, "resistance_mohm": 9500, "wiring_mohm": 500,
+        "heat_capacity_uj_per_k": 2000, "loss_uw_per_k": 2000, "latent_uj": 90000,
+        "as_degc": 68, "af_degc": 78, "ms_degc": 52, "mf_degc": 42,
+    },
+    "supply": {"current_max_ma": 400, "at_once_max": 4, "low_mv": 1500, "shunt_mohm": 100},
+    "session": {"lease_ms": 500, "lease_max_ms": 5000},
+    "program": {"bytes_max": 1024, "depth_max": 8, "guards_max": 8},
+}  # fmt: skip
+
+
+def round_robot(**coil):
+    """Return a profile with round numbers: 200 mA and 380 mW at full duty; `coil` changes limits of its coils."""
+    return read_profile(json.dumps({**ROUND, "coil": {**ROUND["coil"], **coil}}).encode())
+
+
+def circular():
+    """Return the profile of the circular robot, as its firmware sends it."""
+    return read_profile((ROOT / "firmware" / "robots" / "circular.json").read_bytes())
+
+
+def compiled(body, *overrides, profile=None, head=HEAD):
+    """Return the compiled script that `body` makes below the two head lines."""
+    return compile_script(loads(head + body + "\n"), profile or round_robot(), overrides)
+
+
+def ops(body, *overrides):
+    """Return (name, arguments...) of each op of a script, without step marks and the halt."""
+    rows = [row[1:] for row in disassemble(compiled(body, *overrides).code)]
+    return [row for row in rows if row[0] not in ("step", "halt")]
+
+
+def report(body, profile=None):
+    """Return the checker's report on a script."""
+    return check(compiled(body, profile=profile))
+
+
+def mistakes(body, *overrides, head=HEAD, files=None, profile=None):
+    """Return (code, line, column) of each mistake; lines count from the first line of `body`."""
+    return [(item.code, item.place.line - head.count("\n"), item.place.column)
+            for item in diagnostics(body, *overrides, head=head, files=files, profile=profile)]  # fmt: skip
+
+
+def diagnostics(body, *overrides, head=HEAD, files=None, profile=None):
+    """Return what is wrong with a script; `files` are texts by path for what it includes."""
+    texts = {"script.gait": head + body + "\n", **(files or {})}
+    with pytest.raises(GaitError) as caught:
+        compile_script(load("script.gait", reader(texts)), profile or round_robot(), overrides)
+    return caught.value.diagnostics
+
+
+def reader(texts):
+    """Return a reader of files that exist only here."""
+
+    def read(path):
+        if path not in texts:
+            raise FileNotFoundError(2, "No such file or directory", path)
+        return texts[path]
+
+    return read
