@@ -173,5 +173,5 @@ class Bench:
             np.maximum(self._peak_degc, self.plant.temperature, out=self._peak_degc)
 
     def _solve(self) -> None:
-        self.board.monitor.catch_up()
+        self.board.monitor.before_change()
         self.supply.drive(self.board.gates(), self.board.pwm_period_us(), self.plant.resistance)

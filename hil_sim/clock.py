@@ -16,21 +16,16 @@ Callback = Callable[[], None]
 
 
 class Event:
-    """A callback due at a time; `cancel` makes it a no-op."""
+    """A callback in the queue; `cancel` makes it a no-op."""
 
-    __slots__ = ("_order", "callback", "time_us")
+    __slots__ = ("callback",)
 
-    def __init__(self, time_us: int, order: int, callback: Callback) -> None:
-        self.time_us = time_us
-        self._order = order
+    def __init__(self, callback: Callback) -> None:
         self.callback: Callback | None = callback
 
     def cancel(self) -> None:
         """Never run the callback."""
         self.callback = None
-
-    def __lt__(self, other: "Event") -> bool:
-        return (self.time_us, self._order) < (other.time_us, other._order)
 
 
 class Clock:
@@ -40,27 +35,29 @@ class Clock:
         self.now_us = 0
         self.limit_us = 0
         self._horizon_us = -1
-        self._queue: list[Event] = []
+        self._queue: list[tuple[int, int, Event]] = []  # time_us, order of insertion, event
         self._order = 0
 
     def at(self, time_us: int, callback: Callback) -> Event:
         """Queue `callback` for `time_us` (for now, if that has passed) and return its event."""
-        time_us = max(time_us, self.now_us)
+        if time_us < self.now_us:
+            time_us = self.now_us
+        if time_us < self.limit_us:
+            self.limit_us = time_us
         self._order += 1
-        event = Event(time_us, self._order, callback)
-        heappush(self._queue, event)
-        self.limit_us = min(self.limit_us, time_us)
+        event = Event(callback)
+        heappush(self._queue, (time_us, self._order, event))
         return event
 
     def run_until(self, time_us: int) -> None:
         """Run all events due up to and including `time_us`, or up to an earlier `stop_at`; leave the clock there."""
         self._horizon_us = max(time_us, self.now_us)
         queue = self._queue
-        while queue and queue[0].time_us <= self._horizon_us:
-            event = heappop(queue)
+        while queue and queue[0][0] <= self._horizon_us:
+            time_us, _, event = heappop(queue)
             if event.callback is None:
                 continue
-            self.now_us = event.time_us
+            self.now_us = time_us
             self._set_limit()
             event.callback()
         self.now_us = self._horizon_us
@@ -72,7 +69,5 @@ class Clock:
         self._set_limit()
 
     def _set_limit(self) -> None:
-        limit_us = self._horizon_us + 1
-        if self._queue:
-            limit_us = min(limit_us, self._queue[0].time_us)
-        self.limit_us = limit_us
+        queue, limit_us = self._queue, self._horizon_us + 1
+        self.limit_us = queue[0][0] if queue and queue[0][0] < limit_us else limit_us

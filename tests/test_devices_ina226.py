@@ -38,7 +38,7 @@ class Rig:
         return int.from_bytes(self.bus.read(0x40, 2), "big")
 
     def put(self, shunt_v: float, bus_v: float) -> None:
-        self.chip.catch_up()
+        self.chip.before_change()
         self.source.volts = (shunt_v, bus_v)
 
     def wait_us(self, us: int) -> None:
@@ -242,3 +242,13 @@ def test_a_missing_chip_does_not_answer(rig):
 
     assert rig.bus.write(0x40, b"\x00") == -1
     assert rig.bus.read(0x40, 2) is None
+
+
+def test_a_change_after_a_long_quiet_time_is_weighed_within_its_conversion(rig):
+    rig.put(0.01, 2.0)
+    rig.wait_us(1_000 * 2200 + 275)
+
+    rig.put(0.02, 2.0)
+    rig.wait_us(2200 - 275)
+
+    assert rig.get(0x01) == 4000 + 3000  # a quarter of 1100 us at 4000, the rest at 8000

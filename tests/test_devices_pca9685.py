@@ -212,19 +212,19 @@ def test_open_drain_outputs_cannot_lift_a_gate(rig):
 
 
 def test_allcall_answers_at_0x70_until_it_is_cleared(rig):
-    assert rig.bus.answered(0x70)
+    assert rig.bus.at(0x70)
 
     rig.write(0x00, 0x20)
 
-    assert not rig.bus.answered(0x70)
+    assert not rig.bus.at(0x70)
 
 
 def test_sub_addresses_answer_once_their_bits_are_set(rig):
-    assert not rig.bus.answered(0x71)
+    assert not rig.bus.at(0x71)
 
     rig.write(0x00, 0x28)
 
-    assert rig.bus.answered(0x71)
+    assert rig.bus.at(0x71)
 
 
 def test_the_general_call_resets_the_chip_and_takes_nothing_else(rig):

@@ -72,7 +72,7 @@ def test_bus_time_is_nine_bits_a_byte_rounded_up():
 def test_an_address_that_nobody_has_is_not_acknowledged():
     bus = Bus()
 
-    assert not bus.answered(0x40)
+    assert not bus.at(0x40)
     assert bus.write(0x40, b"\x00") == -1
     assert bus.read(0x40, 1) is None
 

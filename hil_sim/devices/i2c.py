@@ -35,24 +35,32 @@ class Bus:
         self.chips = list(chips)
         self.stuck = False  # SDA held low: nothing is acknowledged any more
 
-    def answered(self, address: int) -> bool:
-        """Return whether anybody acknowledges this address."""
-        return bool(self._at(address))
+    def at(self, address: int) -> list[Chip]:
+        """Return the chips that acknowledge this address."""
+        return [] if self.stuck else [chip for chip in self.chips if chip.answers(address)]
 
     def write(self, address: int, data: bytes) -> int:
         """Send `data` to `address` and return the number of bytes acknowledged; -1 for the address itself."""
-        heard = [chip.write(address, data) for chip in self._at(address)]
-        return max(heard, default=-1)
+        return write(self.at(address), address, data)
 
     def read(self, address: int, count: int) -> bytes | None:
-        """Return `count` bytes from `address`, or None when nobody answers. Several chips pull down as one."""
-        said = [chip.read(count) for chip in self._at(address)]
-        if not said:
-            return None
-        return said[0] if len(said) == 1 else bytes(_and(column) for column in zip(*said, strict=True))
+        """Return `count` bytes from `address`, or None when nobody answers."""
+        chips = self.at(address)
+        return read(chips, count) if chips else None
 
-    def _at(self, address: int) -> list[Chip]:
-        return [] if self.stuck else [chip for chip in self.chips if chip.answers(address)]
+
+def write(chips: list[Chip], address: int, data: bytes) -> int:
+    """Send `data` to chips that answer one address; return how many bytes any of them acknowledged, else -1."""
+    if len(chips) == 1:
+        return chips[0].write(address, data)
+    return max((chip.write(address, data) for chip in chips), default=-1)
+
+
+def read(chips: list[Chip], count: int) -> bytes:
+    """Return `count` bytes from the chips at one address, at least one; several pull the line down as one."""
+    if len(chips) == 1:
+        return chips[0].read(count)
+    return bytes(_and(column) for column in zip(*[chip.read(count) for chip in chips], strict=True))
 
 
 def bus_time_us(byte_count: int, freq_hz: int) -> int:

@@ -2,7 +2,7 @@
 
 Conversions run by themselves at the configured times and averages, and each result is the mean of its own window. No
 event is needed for that: the chip works out what it would have converted when it is next asked, and once more
-(`catch_up`) before the supply changes. Conversions and PWM are not synchronous, so a short conversion of a pulsed
+(`before_change`) before the supply changes. Conversions and PWM are not synchronous, so a short conversion of a pulsed
 current aliases, as on the real board.
 
 ASSUMED: with averaging, shunt and bus conversions alternate; results round to the nearest bit.
@@ -55,14 +55,28 @@ class Ina226:
         self._begin()
 
     def catch_up(self) -> None:
-        """Convert up to now; to be called before the source changes, too."""
+        """Convert up to now."""
         now_us = self._clock.now_us
+        if self._settled:
+            self._repeat(now_us)
+            return
         while self._cycle_us and now_us - self._begun_us >= self._cycle_us:
             self._integrate(self._begun_us + self._cycle_us)
             self._finish()
+            if self._settled:
+                self._repeat(now_us)
+                return
             self._skip(now_us)
         if self._cycle_us and now_us > self._seen_us:
             self._integrate(now_us)
+
+    def before_change(self) -> None:
+        """Convert up to now with what has been on the inputs; to be called before the source changes."""
+        self.catch_up()
+        if self._settled:
+            self._settled = False
+            self.catch_up()
+        self._pure = self._seen_us == self._begun_us
 
     def alert_level(self) -> int:
         """Return the level of the open-drain alert pin with its pull-up: 0 while it alerts."""
@@ -79,6 +93,7 @@ class Ina226:
         if data:
             self._pointer = data[0]
         if len(data) >= 3:
+            self._settled = False
             self._store(data[0], data[1] << 8 | data[2])
         return len(data)
 
@@ -120,6 +135,8 @@ class Ina226:
         self._cycle_us = (self._shunt_us + self._bus_us) * self._averages
         self._begun_us = self._seen_us = self._clock.now_us
         self._shunt_sum = self._bus_sum = 0.0
+        self._pure = True  # nothing has changed since this conversion began
+        self._settled = False  # nor during the one before: its results repeat
 
     def _skip(self, now_us: int) -> None:
         """Leave out conversions whose results nobody can see: all but the last one before now."""
@@ -127,6 +144,14 @@ class Ina226:
         if self._cycle_us and not watched:
             unseen = max(0, (now_us - self._begun_us) // self._cycle_us - 1)
             self._begun_us = self._seen_us = self._begun_us + unseen * self._cycle_us
+
+    def _repeat(self, now_us: int) -> None:
+        """Take whole conversions as done without a change of the results."""
+        turns = (now_us - self._begun_us) // self._cycle_us
+        if turns:
+            self._begun_us = self._seen_us = self._begun_us + turns * self._cycle_us
+            self._shunt_sum = self._bus_sum = 0.0
+            self.registers[MASK] |= READY_FLAG
 
     def _integrate(self, until_us: int) -> None:
         """Add what has been on the inputs between the time last seen and `until_us` to the sums."""
@@ -166,8 +191,11 @@ class Ina226:
         self._alert()
         self._begun_us = self._seen_us
         self._shunt_sum = self._bus_sum = 0.0
+        watched = registers[MASK] & 0xFC00
+        self._settled = self._pure and not watched and self._source.steady_v() is not None
+        self._pure = True
         if not registers[CONFIG] & 4:
-            self._cycle_us = 0  # one shot
+            self._cycle_us, self._settled = 0, False  # one shot
 
     def _alert(self) -> None:
         mask = self.registers[MASK]

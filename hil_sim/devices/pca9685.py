@@ -51,6 +51,7 @@ class Pca9685:
         self.registers[PRE_SCALE] = 0x1E
         self._pointer = 0
         self._woken_us = 0
+        self._listen()
         self._refresh()
 
     @property
@@ -66,15 +67,7 @@ class Pca9685:
 
     def answers(self, address: int) -> bool:
         """Own address, general call, and ALLCALL and the sub-addresses where MODE1 lets them."""
-        if not self.alive:
-            return False
-        if address in (self.address, GENERAL_CALL):
-            return True
-        mode1 = self.registers[MODE1]
-        groups = (0x08, 0x04, 0x02, ALLCALL)
-        return any(
-            mode1 & bit and self.registers[SUBADR1 + index] >> 1 == address for index, bit in enumerate(groups)
-        )
+        return address in self._addresses and self.alive
 
     def write(self, address: int, data: bytes) -> int:
         """Take a control byte and register bytes; stop acknowledging at a reserved register."""
@@ -90,6 +83,7 @@ class Pca9685:
             self._store(self._pointer, byte)
             self._advance()
         if self.registers[: _LAST_LED + 1] != before:
+            self._listen()
             self._refresh()
         return len(data)
 
@@ -149,6 +143,13 @@ class Pca9685:
 
     def _any_in_use(self) -> bool:
         return any(not self.registers[LED0 + 4 * channel + 3] & _FULL for channel in range(16))
+
+    def _listen(self) -> None:
+        """Work out the addresses that the registers make it answer."""
+        mode1, registers = self.registers[MODE1], self.registers
+        groups = enumerate((0x08, 0x04, 0x02, ALLCALL))
+        called = {registers[SUBADR1 + index] >> 1 for index, bit in groups if mode1 & bit}
+        self._addresses = called | {self.address, GENERAL_CALL}
 
     def _refresh(self) -> None:
         outputs = self._driven()

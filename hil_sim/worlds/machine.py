@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Protocol
 
 from hil_sim.board import SCL, SDA, Board
 from hil_sim.clock import Clock
-from hil_sim.devices import gpio
+from hil_sim.devices import gpio, i2c
 from hil_sim.devices.i2c import Bus, bus_time_us
 from hil_sim.devices.ntc import scaled_to_u16
 from hil_sim.devices.uart import BUFFER_BYTES, Uart
@@ -120,19 +120,17 @@ class I2C:
     def scan(self) -> list[int]:
         """Return the addresses that answer."""
         self._processor.spend(bus_time_us(0x70, self._freq))
-        return [address for address in range(0x08, 0x78) if self._bus.answered(address)]
+        return [address for address in range(0x08, 0x78) if self._bus.at(address)]
 
     def writeto(self, addr: int, buf: bytes | Buffer, stop: bool = True) -> int:
         """Write `buf`; return how many bytes were acknowledged."""
         data = bytes(buf)
-        self._begin(addr, 1 + len(data))
-        self._write(addr, data)
+        self._write(self._begin(addr, 1 + len(data)), addr, data)
         return len(data)
 
     def readfrom(self, addr: int, nbytes: int, stop: bool = True) -> bytes:
         """Return `nbytes` bytes."""
-        self._begin(addr, 1 + nbytes)
-        return self._read(addr, nbytes)
+        return self._read(self._begin(addr, 1 + nbytes), addr, nbytes)
 
     def readfrom_into(self, addr: int, buf: Buffer, stop: bool = True) -> None:
         """Fill `buf`."""
@@ -145,33 +143,31 @@ class I2C:
     def readfrom_mem(self, addr: int, memaddr: int, nbytes: int, *, addrsize: int = 8) -> bytes:
         """Return `nbytes` bytes from register `memaddr` on."""
         pointer = memaddr.to_bytes(addrsize // 8, "big")
-        self._begin(addr, 2 + len(pointer) + nbytes)
-        self._write(addr, pointer)
-        return self._read(addr, nbytes)
+        chips = self._begin(addr, 2 + len(pointer) + nbytes)
+        self._write(chips, addr, pointer)
+        return self._read(chips, addr, nbytes)
 
     def readfrom_mem_into(self, addr: int, memaddr: int, buf: Buffer, *, addrsize: int = 8) -> None:
         """Fill `buf` from register `memaddr` on."""
         buf[:] = self.readfrom_mem(addr, memaddr, len(buf), addrsize=addrsize)
 
-    def _begin(self, addr: int, byte_count: int) -> None:
-        """Spend the time of the transfer; of the address alone when nobody answers."""
-        if self._bus.answered(addr):
-            self._processor.spend(bus_time_us(byte_count, self._freq))
-        else:
-            self._processor.spend(bus_time_us(1, self._freq))
+    def _begin(self, addr: int, byte_count: int) -> list[i2c.Chip]:
+        """Spend the time of the transfer and return who answers; of the address alone when nobody does."""
+        chips = self._bus.at(addr)
+        self._processor.spend(bus_time_us(byte_count if chips else 1, self._freq))
+        if not chips:
             raise OSError(5, "EIO")
+        return chips
 
-    def _write(self, addr: int, data: bytes) -> None:
+    def _write(self, chips: list[i2c.Chip], addr: int, data: bytes) -> None:
         processor = self._processor
         processor.board.journal.note(processor.clock.now_us, I2C_WRITE, addr, data)
-        if self._bus.write(addr, data) < len(data):
+        if i2c.write(chips, addr, data) < len(data):
             raise OSError(5, "EIO")
 
-    def _read(self, addr: int, count: int) -> bytes:
+    def _read(self, chips: list[i2c.Chip], addr: int, count: int) -> bytes:
         processor = self._processor
-        data = self._bus.read(addr, count)
-        if data is None:
-            raise OSError(5, "EIO")
+        data = i2c.read(chips, count)
         processor.board.journal.note(processor.clock.now_us, I2C_READ, addr, data)
         return data
 
