@@ -1,16 +1,15 @@
 r"""Solves the symmetric system of a closed chain of two-by-two blocks with a border of three.
 
-Node i meets nodes i + 1 and i + 2 around the ring and the hub. Nodes 0 .. N-3 form a band of half-width 5; the last two nodes and
-the hub are a border of 7 columns, the right side is the eighth. One pass of L D L^T takes the band away from border and corner,
-so each column costs fixed loops of 5 and 8: no search, no allocation, the same sums in the same order each time.
+Node i meets nodes i + 1 and i + 2 around the ring and the hub. Nodes 0 .. N-3 form a band of half-width 5; the last
+two nodes and the hub are a border of 7 columns, the right side is the eighth. One pass of L D L^T takes the band away
+from border and corner, so each column costs fixed loops of 5 and 8: no search, no allocation, the same sums in the
+same order each time.
 
 A pivot that is not positive means that the step is too long for an unstable shape: `solve` then returns False.
 """
 
 from hil_sim.physics.compiled import Array, kernel
-from hil_sim.physics.ring import (
-    AXX, AXY, AYX, AYY, BXX, BXY, BYX, BYY, DXX, DXY, DYY, HXX, HXY, HXP, HYX, HYY, HYP,
-)  # fmt: skip
+from hil_sim.physics.ring import AXX, AXY, AYX, AYY, BXX, BXY, BYX, BYY, DXX, DXY, DYY, HXX, HYX
 
 BAND = 6
 BORDER = 8
@@ -18,8 +17,10 @@ RHS = 7
 
 
 @kernel
-def solve(blocks: Array, hub: Array, mass: Array, rhs: Array, band: Array, border: Array, corner: Array, x: Array) -> bool:
-    """Write to x the solution of (blocks, hub, and mass on the diagonal) x = rhs; return False if it is not positive."""
+def solve(
+    blocks: Array, hub: Array, mass: Array, rhs: Array, band: Array, border: Array, corner: Array, x: Array
+) -> bool:
+    """Write to x the solution of (blocks, hub, mass on the diagonal) x = rhs; return False if it is not positive."""
     n = blocks.shape[1]
     load_band(blocks, mass, rhs, band, border, n)
     load_corner(blocks, hub, mass, rhs, band, border, corner, n)
@@ -58,7 +59,7 @@ def load_band(blocks: Array, mass: Array, rhs: Array, band: Array, border: Array
 def load_corner(
     blocks: Array, hub: Array, mass: Array, rhs: Array, band: Array, border: Array, corner: Array, n: int
 ) -> None:
-    """Move what meets the last two nodes from the band to the border, and fill the corner of those nodes and the hub."""
+    """Move what meets the last two nodes from band to border, and fill the corner of those nodes and the hub."""
     last = 2 * n - 6
     for a in range(2):
         for k in range(2 - a, BAND):

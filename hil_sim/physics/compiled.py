@@ -1,7 +1,7 @@
 """Compiles the numerical kernels once, keeps them on disk, and says so when that takes a while.
 
-Every kernel carries `@kernel`. The compiler's own cache looks only at the file a function stands in, so a change in one file
-would leave stale code in its callers: `prepare` drops the whole cache when any source here is newer than it.
+Every kernel carries `@kernel`. The compiler's own cache looks only at the file a function stands in, so a change in
+one file would leave stale code in its callers: `prepare` drops the whole cache when any source here is newer than it.
 """
 
 import sys

@@ -4,12 +4,14 @@ r"""One-sided contact: rim nodes on the plane y = 0 with Coulomb friction, and t
     n = \max(0, k_n d - c(d) \dot y), \quad d = -y > 0, \qquad
     t = -k_n (x - x_a) - c(d) \dot x, \quad |t| \le \mu n                                                (C1)
 
-The anchor x_a is set where a node touches down and moves only while the node slips, so that |t| = mu n (return mapping): what
-stands, stands, and does not creep as velocity-regularised friction does. The damping grows with the depth over the first
-10 um, so that forces are continuous. The hub is a disc; it is pushed off every edge that comes nearer than its radius.
+The anchor x_a is set where a node touches down and moves only while the node slips, so that |t| = mu n (return
+mapping): what stands, stands, and does not creep as velocity-regularised friction does. The damping grows with the
+depth over the first 10 um, so that forces are continuous. The hub is a disc; it is pushed off every edge that comes
+nearer than its radius.
 
-Source: return mapping is the standard treatment of elastic-plastic friction. A stiffer k_n changes where a jump goes by about
-3 %, and a crawl not at all: tests/test_physics_ring_ground.py. The rim does not touch itself: `crossings` counts, for a guard.
+Source: return mapping is the standard treatment of elastic-plastic friction. A stiffer k_n changes where a jump goes
+by about 3 %, and a crawl not at all: tests/test_physics_ring_ground.py. The rim does not touch itself: `crossings`
+counts, for a guard.
 """
 
 import numpy as np
@@ -18,8 +20,8 @@ from hil_sim.physics.compiled import Array, kernel
 from hil_sim.physics.ring import DXX, DYY, Ring, couple
 
 # Rows of the array `ground`, one column per node.
-ANCHOR, TOUCH, NORMAL, FRICTION, SLIP = range(5)
-GROUND_ROWS = 5
+ANCHOR, TOUCH, NORMAL, FRICTION, SLIP, NORMAL_BEFORE, FRICTION_BEFORE = range(7)
+GROUND_ROWS = 7
 DEPTH_RAMP = 1e-5  # [m]
 
 
@@ -137,7 +139,8 @@ def crossings(ring: Ring, q: Array) -> int:
 @kernel
 def side(q: Array, a: int, b: int, c: int) -> float:
     """Return twice the signed area of the triangle of the points at a, b and c [m2]."""
-    return (q[b] - q[a]) * (q[c + 1] - q[a + 1]) - (q[b + 1] - q[a + 1]) * (q[c] - q[a])
+    area: float = (q[b] - q[a]) * (q[c + 1] - q[a + 1]) - (q[b + 1] - q[a + 1]) * (q[c] - q[a])
+    return area
 
 
 @kernel

@@ -5,13 +5,14 @@ r"""Moves the ring: implicit generalised-alpha steps whose length follows the lo
     \quad q_1 = q_0 + h v_0 + h^2 [(\tfrac12 - \beta) a_0 + \beta a_1],
     \quad v_1 = v_0 + h [(1 - \gamma) a_0 + \gamma a_1]                                              (I1)
 
-a_m = (2 r - 1)/(r + 1), a_f = r/(r + 1), beta = (1 - a_m + a_f)^2/4, gamma = 1/2 - a_m + a_f for the damping r of the highest
-frequency (0 dissipates all, 1 nothing). Second order: backward Euler would take 28 % of a jump. Solved by Newton's method
-with a line search; a step that does not converge, meets a pivot that is not positive, or errs more than the tolerance
-|beta - 1/6| h^2 |a_1 - a_0| is halved. Standing still the steps grow to 5 ms, in a snap they shrink to some 0.1 ms.
+a_m = (2 r - 1)/(r + 1), a_f = r/(r + 1), beta = (1 - a_m + a_f)^2/4, gamma = 1/2 - a_m + a_f for the damping r of the
+highest frequency (0 dissipates all, 1 nothing). Second order: backward Euler would take 28 % of a jump. Solved by
+Newton's method with a line search; a step that does not converge, meets a pivot that is not positive, or errs more
+than the tolerance |beta - 1/6| h^2 |a_1 - a_0| is halved. Standing still the steps grow to 5 ms, in a snap they
+shrink to some 0.1 ms.
 
-Source: Chung and Hulbert 1993 (standard result), error measure of Newmark's family (standard result).
-Order, energy and repeatability: tests/test_physics_ring_motion.py.
+Source: Chung and Hulbert 1993 (standard result), error measure of Newmark's family (standard result). Order, energy
+and repeatability: tests/test_physics_ring_motion.py.
 """
 
 from typing import NamedTuple
@@ -21,18 +22,42 @@ import numpy as np
 from hil_sim.physics.banded import BAND, BORDER, solve
 from hil_sim.physics.compiled import Array, kernel
 from hil_sim.physics.contact import (
-    GROUND_ROWS, ground_forces, ground_tangent, hub_forces, hub_tangent, settle_anchors,
-)  # fmt: skip
+    FRICTION,
+    FRICTION_BEFORE,
+    GROUND_ROWS,
+    NORMAL,
+    NORMAL_BEFORE,
+    ground_forces,
+    ground_tangent,
+    hub_forces,
+    hub_tangent,
+    settle_anchors,
+)
 from hil_sim.physics.ring import (
-    BLOCK_ROWS, PULL, RIM_ROWS, SPOKE_ROWS, Ring, rim_forces, rim_tangent, spoke_forces, spoke_tangent,
+    BLOCK_ROWS,
+    LENGTH,
+    LENGTH_BEFORE,
+    PULL,
+    PULL_BEFORE,
+    RIM_ROWS,
+    SPOKE_ROWS,
+    Ring,
+    bend_loss,
+    rim_forces,
+    rim_tangent,
+    spoke_forces,
+    spoke_tangent,
 )  # fmt: skip
 
-# Entries of `tally`: time, next step, counts, and the work of each kind of force since the start [s, s, 1, J].
-TIME, STEP, STEPS, REJECTED, ITERATIONS, COIL_WORK, GROUND_WORK, HUB_WORK, BEND_LOSS, DRAG_LOSS, PEAK_FORCE = range(11)
-TALLIES = 11
+# Entries of `tally`: time and next step [s], counts; work of coils, ground and tilting, losses [J] and their rates [W];
+TIME, STEP, STEPS, REJECTED, ITERATIONS, COIL_WORK, GROUND_WORK, TILT_WORK = range(8)
+BEND_LOSS, DRAG_LOSS, BEND_RATE, DRAG_RATE = range(8, 12)
+# greatest force [N] and temperature [degC] of a coil, height of centre of mass and of lowest point [m], rotation [rad].
+PEAK_FORCE, PEAK_T, APEX, CLEARANCE, TURN = range(12, 17)
+TALLIES = 17
 STEP_MAX = 5e-3  # [s]
 STEP_MIN = 1e-7  # [s]
-RESIDUAL = 1e-9  # [N]
+RESIDUAL = 1e-8  # [N]
 ITERATIONS_MAX = 12
 CUTS_MAX = 5
 
@@ -86,9 +111,7 @@ def motion_of(ring: Ring, q: Array) -> Motion:
 
 
 @kernel
-def forces(
-    ring: Ring, gx: float, gy: float, m: Motion, q: Array, v: Array, cv: float, f: Array
-) -> bool:
+def forces(ring: Ring, gx: float, gy: float, m: Motion, q: Array, v: Array, cv: float, f: Array) -> bool:
     """Write the gradient of all forces at q, v to f [N]; return whether the hub touches the rim."""
     n = ring.nodes
     for i in range(2 * n, 2 * n + 3):
@@ -146,9 +169,7 @@ def place(m: Motion, method: Method, h: float) -> None:
 
 
 @kernel
-def attempt(
-    ring: Ring, gx: float, gy: float, method: Method, m: Motion, h: float
-) -> bool:
+def attempt(ring: Ring, gx: float, gy: float, method: Method, m: Motion, h: float) -> bool:
     """Solve one step of length h for the new state; return False if it must be shorter."""
     ca = (1.0 - method.a_m) / ((1.0 - method.a_f) * method.beta * h * h)
     cv = method.gamma / (method.beta * h)
@@ -190,18 +211,42 @@ def local_error(method: Method, m: Motion, h: float) -> float:
 @kernel
 def accept(ring: Ring, m: Motion, h: float) -> None:
     """Make the new state the present one and add the work of the step to the tallies."""
-    settle_anchors(ring, m.now[0], m.new[0], m.ground)
-    m.tally[TIME] += h
-    m.tally[STEPS] += 1.0
+    tally, ground, spokes = m.tally, m.ground, m.spokes
+    for i in range(ring.nodes):
+        dx, dy = m.new[0, 2 * i] - m.now[0, 2 * i], m.new[0, 2 * i + 1] - m.now[0, 2 * i + 1]
+        along = ground[FRICTION, i] + ground[FRICTION_BEFORE, i]
+        across = ground[NORMAL, i] + ground[NORMAL_BEFORE, i]
+        tally[GROUND_WORK] += 0.5 * (along * dx + across * dy)
     for s in range(ring.feet.size):
-        m.tally[PEAK_FORCE] = max(m.tally[PEAK_FORCE], m.spokes[PULL, s])
+        shortening = spokes[LENGTH_BEFORE, s] - spokes[LENGTH, s]
+        tally[COIL_WORK] += 0.5 * (spokes[PULL, s] + spokes[PULL_BEFORE, s]) * shortening
+        tally[PEAK_FORCE] = max(tally[PEAK_FORCE], spokes[PULL, s])
+    bend, drag = bend_loss(ring, m.rim), drag_loss(ring, m.new[1])
+    tally[BEND_LOSS] += 0.5 * h * (bend + tally[BEND_RATE])
+    tally[DRAG_LOSS] += 0.5 * h * (drag + tally[DRAG_RATE])
+    tally[BEND_RATE] = bend
+    tally[DRAG_RATE] = drag
+    tally[TIME] += h
+    tally[STEPS] += 1.0
+    settle_anchors(ring, m.now[0], m.new[0], ground)
+    ground[NORMAL_BEFORE] = ground[NORMAL]
+    ground[FRICTION_BEFORE] = ground[FRICTION]
+    spokes[LENGTH_BEFORE] = spokes[LENGTH]
+    spokes[PULL_BEFORE] = spokes[PULL]
     m.now[:] = m.new
 
 
 @kernel
-def march(
-    ring: Ring, gx: float, gy: float, method: Method, m: Motion, duration: float
-) -> None:
+def drag_loss(ring: Ring, v: Array) -> float:
+    """Return the power that the air takes [W]."""
+    power = 0.0
+    for i in range(v.size):
+        power += ring.drag * ring.mass[i] * v[i] * v[i]
+    return power
+
+
+@kernel
+def march(ring: Ring, gx: float, gy: float, method: Method, m: Motion, duration: float) -> None:
     """Advance the body by exactly `duration` [s] at frozen phase of the coils, in as many steps as it takes."""
     left = duration
     while left > 0.0:

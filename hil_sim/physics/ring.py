@@ -6,16 +6,17 @@ A closed discrete elastic rod of N nodes and edges e_i from node i to i+1, count
     U = \sum_i \frac{EI}{2 l_0} (c_i - c_0)^2 + \sum_i \frac{EA}{2 l_0} (|e_i| - l_0)^2,
     \qquad c_i = 2 \tan(\varphi_i / 2)                                                      (R1)
 
-with the turning angle \varphi_i from e_{i-1} to e_i. The tangent measure, not the angle itself, makes N = 32 right to 1 % in
-deflection and frequency, and it forbids folding. Kelvin-Voigt damping acts on the curvature, c_i -> c_i + tau_v dc_i/dt.
-A spoke of length L between its rim node and the hub has the force of its coil (`spring`, S1) at a phase frozen for the
-step, and while taut a damping d that never makes it push; closed, the winding resists:
+with the turning angle \varphi_i from e_{i-1} to e_i. The tangent measure, not the angle itself, makes N = 32 right to
+1 % in deflection and frequency, and it forbids folding. Kelvin-Voigt damping acts on the curvature, c_i -> c_i +
+tau_v dc_i/dt. A spoke of length L between its rim node and the hub has the force of its coil (`spring`, S1) at a
+phase frozen for the step, and while taut a damping d that never makes it push; closed, the winding resists:
 
 .. math::  F = \max(0, k (L - L_0) + d \dot L)_{L > L_0} - k_s \max(0, L_s - L)                       (R2)
 
-Source: the energy is that of a discrete elastic rod (standard result; Bergou 2008 for the family); derivatives derived here and
-held against finite differences in tests/test_physics_ring_forces.py, which also checks the two laws of a thin ring.
-Forces are kept as gradients `f` (the equation of motion is M a + f = 0). Unknowns are q = [x_0, y_0, ... x_hub, y_hub, psi_hub].
+Source: the energy is that of a discrete elastic rod (standard result; Bergou 2008 for the family); derivatives
+derived here and held against finite differences in tests/test_physics_ring_forces.py, which also checks the two laws
+of a thin ring. Forces are kept as gradients `f` (the equation of motion is M a + f = 0). Unknowns are q = [x_0, y_0,
+... x_hub, y_hub, psi_hub].
 """
 
 from typing import NamedTuple
@@ -33,9 +34,11 @@ RIM_ROWS = 9
 # Rows of the scratch `blocks`: diagonal, first and second neighbour and hub columns of each node's two rows.
 DXX, DXY, DYY, AXX, AXY, AYX, AYY, BXX, BXY, BYX, BYY, HXX, HXY, HXP, HYX, HYY, HYP = range(17)
 BLOCK_ROWS = 17
-# Rows of the scratch `spokes`: length, force, tangent, direction, twist and arm of the attachment; then the frozen coils.
+# Rows of the scratch `spokes`: length, force, tangent, direction, twist and arm of the attachment; the frozen coils;
+# length and force before the step.
 LENGTH, PULL, RATE, UX, UY, TWIST, ARM, SOFT, FREE, SOLID, HARD = range(11)
-SPOKE_ROWS = 11
+LENGTH_BEFORE, PULL_BEFORE = range(11, 13)
+SPOKE_ROWS = 13
 DAMPING_RAMP = 5e-5  # [m] the damping of a spoke grows from zero over this stretch, so that the force is continuous
 
 
@@ -57,6 +60,7 @@ class Ring(NamedTuple):
     mass: Array  # (2 N + 3,) [kg, kg m2]
     arms: Array  # attachments about the centre of the hub (2, S) [m]
     feet: NDArray[np.int64]  # node of each spoke (S,) [1]
+    compass: Array  # directions of the nodes of the round ring that has not turned (2, N) [1]
 
 
 def ring_of(numbers: RingNumbers, ground: GroundNumbers, spokes: int) -> Ring:
@@ -68,24 +72,25 @@ def ring_of(numbers: RingNumbers, ground: GroundNumbers, spokes: int) -> Ring:
     if n < 8 or n % spokes:
         raise ValueError(f"{n} nodes for {spokes} spokes: at least 8, and a multiple of the spokes")
     half = np.pi / n
-    angles = 2.0 * np.pi * np.arange(spokes) / spokes - 0.5 * np.pi
+    angles = 2.0 * np.pi * np.arange(n) / n - 0.5 * np.pi
+    compass, feet = np.array([np.cos(angles), np.sin(angles)]), np.arange(spokes) * (n // spokes)
     mass = np.full(2 * n + 3, p.m / n)
     mass[2 * n :] = p.m_hub
     mass[2 * n + 2] *= 0.5 * p.r_hub**2
     return Ring(
         n, p.EI, p.EA, p.tau_v, p.drag, 2.0 * p.R * np.sin(half), 2.0 * np.tan(half), p.damping, p.r_hub,
         ground.k_n, ground.c_n, ground.mu, mass,
-        p.attach * np.array([np.cos(angles), np.sin(angles)]), np.arange(spokes) * (n // spokes),
+        p.attach * compass[:, feet], feet, compass,
     )  # fmt: skip
 
 
-def round_pose(ring: Ring, R: float, height: float) -> Array:
-    """Return the unknowns of the round ring of radius R, node 0 at the bottom, its centre at (0, height) [m]."""
-    angles = 2.0 * np.pi * np.arange(ring.nodes) / ring.nodes - 0.5 * np.pi
+def round_pose(ring: Ring, R: float, height: float, turn: float = 0.0) -> Array:
+    """Return the unknowns of a round ring of radius R, centre at (0, height) [m], turned forward by `turn` [rad]."""
     q = np.zeros(2 * ring.nodes + 3)
-    q[0:-3:2] = R * np.cos(angles)
-    q[1:-3:2] = height + R * np.sin(angles)
-    q[-2] = height
+    (x, y), cosine, sine = R * ring.compass, np.cos(turn), np.sin(turn)
+    q[0:-3:2] = x * cosine + y * sine
+    q[1:-3:2] = height + y * cosine - x * sine
+    q[-2:] = height, -turn
     return q
 
 
@@ -284,6 +289,42 @@ def couple(blocks: Array, hub: Array, i: int, kxx: float, kxy: float, kyy: float
     hub[0, 0] += kxx
     hub[1, 0] += kxy
     hub[1, 1] += kyy
+
+
+@kernel
+def bend_loss(ring: Ring, rim: Array) -> float:
+    """Return the power lost in bending, from what `rim_forces` left in rim [W]."""
+    power = 0.0
+    for i in range(1, ring.nodes + 1):
+        dot = rim[TX, i - 1] * rim[TX, i] + rim[TY, i - 1] * rim[TY, i]
+        rate = 2.0 / (1.0 + dot) * (rim[SPIN, i] - rim[SPIN, i - 1])
+        power += rate * rate
+    return ring.EI / ring.l0 * ring.tau_v * power
+
+
+@kernel
+def turned(ring: Ring, q: Array) -> float:
+    """Return by how much the rim as a whole is turned, positive forward (clockwise), -pi < turned <= pi [rad]."""
+    n, x, y, sine, cosine = ring.nodes, 0.0, 0.0, 0.0, 0.0
+    for i in range(n):
+        x += q[2 * i] / n
+        y += q[2 * i + 1] / n
+    for i in range(n):
+        dx, dy, ax, ay = q[2 * i] - x, q[2 * i + 1] - y, ring.compass[0, i], ring.compass[1, i]
+        cosine += ax * dx + ay * dy
+        sine += ay * dx - ax * dy
+    return float(np.arctan2(sine, cosine))
+
+
+@kernel
+def centre(ring: Ring, q: Array) -> tuple[float, float]:
+    """Return the centre of mass of rim and hub [m]."""
+    mass = x = y = 0.0
+    for i in range(ring.nodes + 1):
+        mass += ring.mass[2 * i]
+        x += ring.mass[2 * i] * q[2 * i]
+        y += ring.mass[2 * i] * q[2 * i + 1]
+    return x / mass, y / mass
 
 
 @kernel

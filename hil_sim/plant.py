@@ -1,0 +1,166 @@
+"""The ring robot as a plant: electrical power of the coils in, shape and temperatures out.
+
+Axes: x along the plane and up its slope, y away from it, the origin below the place where the robot stood at the
+start. Coil 0 is down at the start and the others follow counter-clockwise, so that rolling forward, to greater x,
+brings them down in their order; `rotation_deg` is positive in that sense. The plane of a robot on a slope lies level
+at first and is tilted from 2 s on, at 10 degrees a second, as one would under a robot that must first take hold: a
+round ring rolls off any slope.
+
+    plant = RingPlant(load("circular"))
+    plant.advance(5000, np.array([0.3, 0, 0, 0, 0, 0, 0, 0]))
+    plant.observe()["travel_mm"]
+"""
+
+from math import degrees
+from typing import Any
+
+import numpy as np
+
+from hil_sim.physics import body, coil
+from hil_sim.physics.coilset import coils_of, cold
+from hil_sim.physics.compiled import Array, prepare
+from hil_sim.physics.contact import crossings
+from hil_sim.physics.motion import (
+    APEX,
+    BEND_LOSS,
+    CLEARANCE,
+    COIL_WORK,
+    DRAG_LOSS,
+    GROUND_WORK,
+    ITERATIONS,
+    PEAK_FORCE,
+    PEAK_T,
+    REJECTED,
+    STEP,
+    STEPS,
+    TILT_WORK,
+    TIME,
+    TURN,
+    method_of,
+    motion_of,
+)
+from hil_sim.physics.ring import LENGTH, LENGTH_BEFORE, PULL, centre, rim_energy, ring_of, round_pose
+from hil_sim.robotfile import RobotFile
+
+TILT_FROM = 2.0  # [s] after the start
+TILT_RATE = np.radians(10.0)  # [rad/s]
+SETTLING_DRAG = 20.0  # [1/s]
+
+
+class RingPlant:
+    """Coils, ring and ground of one robot, at rest at time 0; a function of the powers given to it and nothing else."""
+
+    def __init__(self, robot: RobotFile, rho: float = 0.6, tolerance: float = 2e-6) -> None:
+        prepare(body.advance)
+        ground, count = robot.ground, len(robot.labels)
+        self.labels = list(robot.labels)
+        self._ring = ring_of(robot.ring, ground, count)
+        self._world = body.World(ground.gravity, ground.slope, TILT_FROM, abs(ground.slope) / TILT_RATE)
+        self._method = method_of(rho, tolerance)
+        R = robot.ring.R
+        self._motion = motion_of(self._ring, round_pose(self._ring, R, R, robot.start.turn))
+        self._motion.spokes[[LENGTH, LENGTH_BEFORE]] = R - robot.ring.attach
+        coils = coils_of(robot.coil, count, ground.T_amb)
+        self._coils = body.packed(coils)
+        self._state = cold(coils, self._motion.spokes[LENGTH])
+        coil.measure(self._state, self._motion.spokes[LENGTH], coils)
+        self._settle(robot.start.settle)
+        self._start = centre(self._ring, self._motion.now[0])
+        self._stored_at_start = sum(self._stored().values())
+
+    @property
+    def temperature(self) -> Array:
+        """Temperatures of the coils [degC]."""
+        return self._state.T
+
+    @property
+    def resistance(self) -> Array:
+        """Resistances of the coils [ohm]."""
+        return self._state.R
+
+    @property
+    def force(self) -> Array:
+        """Pulls of the coils [N]."""
+        pulls: Array = self._motion.spokes[PULL]
+        return pulls
+
+    def advance(self, duration_us: int, coil_power_w: Array) -> None:
+        """Let time pass with the mean electrical power of each coil."""
+        duration, m = duration_us * 1e-6, self._motion
+        body.advance(self._ring, self._coils, self._state, self._world, self._method, m, coil_power_w, duration)
+
+    def observe(self) -> dict[str, Any]:
+        """Return what a motion capture system and a thermal camera would say."""
+        tally = self._motion.tally
+        x, _ = centre(self._ring, self._motion.now[0])
+        return {
+            "travel_mm": 1e3 * (x - self._start[0]),
+            "lateral_mm": 0.0,
+            "rotation_deg": degrees(tally[TURN]),
+            "apex_mm": 1e3 * max(0.0, float(tally[APEX]) - self._start[1]),
+            "clearance_mm": 1e3 * float(tally[CLEARANCE]),
+            "peak_coil_degc": float(tally[PEAK_T]),
+            "peak_coil_force_n": float(tally[PEAK_FORCE]),
+            "coil_degc": dict(zip(self.labels, self._state.T.tolist(), strict=True)),
+            "rim_crossings": crossings(self._ring, self._motion.now[0]),
+        }
+
+    def snapshot(self) -> dict[str, Any]:
+        """Return the shape at this moment in millimetres along and above the plane, and where each coil pulls."""
+        q, ring = self._motion.now[0], self._ring
+        nodes = (1e3 * q[:-3].reshape(-1, 2)).tolist()
+        hub, angle = (1e3 * q[-3:-1]).tolist(), float(q[-1])
+        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        ends = (1e3 * (q[-3:-1, None] + turn @ ring.arms)).T.tolist()
+        coils = {
+            label: {"degc": degc, "force_n": force, "from": start, "to": nodes[foot]}
+            for label, degc, force, start, foot in zip(
+                self.labels, self._state.T.tolist(), self.force.tolist(), ends, ring.feet, strict=True
+            )
+        }
+        t = float(self._motion.tally[TIME])
+        gx, gy = body.gravity(self._world, t)
+        slope_deg = degrees(np.arctan2(-gx, -gy)) if gy else 0.0
+        return {"t_s": t, "hub": [*hub, angle], "nodes": nodes, "coils": coils, "slope_deg": slope_deg}
+
+    def energies(self) -> dict[str, float]:
+        """Return what the body holds and what went in and out since the start [J]; `numerical_j` closes the balance.
+
+        Coils, tilting and ground give (the ground mostly takes), bending and air lose.
+        """
+        tally = self._motion.tally
+        given = {"coils_j": COIL_WORK, "tilt_j": TILT_WORK, "ground_j": GROUND_WORK}
+        lost = {"bending_loss_j": BEND_LOSS, "air_loss_j": DRAG_LOSS}
+        stored = self._stored()
+        balance = {name: float(tally[row]) for name, row in (given | lost).items()}
+        change = sum(stored.values()) - self._stored_at_start
+        gone = sum(balance[name] for name in given) - sum(balance[name] for name in lost)
+        return {**stored, **balance, "numerical_j": gone - change}
+
+    def effort(self) -> dict[str, int]:
+        """Return how many steps, rejected steps and Newton iterations it took so far."""
+        tally = self._motion.tally
+        return {"steps": int(tally[STEPS]), "rejected": int(tally[REJECTED]), "iterations": int(tally[ITERATIONS])}
+
+    def _settle(self, seconds: float) -> None:
+        """Come to rest on the level plane in thick air, then begin to count."""
+        level, thick = self._world._replace(slope=0.0), self._ring._replace(drag=SETTLING_DRAG)
+        tally, now, idle = self._motion.tally, self._motion.now, np.zeros(len(self.labels))
+        if seconds > 0.0:
+            body.advance(thick, self._coils, self._state, level, self._method, self._motion, idle, seconds)
+        now[1:3] = 0.0
+        keep = tally[[STEP, TURN]]
+        tally[:] = 0.0
+        tally[[STEP, TURN]] = keep
+
+    def _stored(self) -> dict[str, float]:
+        """Return the mechanical energy of rim and hub [J]; that in the coils belongs to the coils."""
+        now, ring = self._motion.now, self._ring
+        gx, gy = body.gravity(self._world, self._motion.tally[TIME])
+        x, y = centre(ring, now[0])
+        weighed = ring.mass[:-2:2].sum()
+        return {
+            "kinetic_j": 0.5 * float(ring.mass @ now[1] ** 2),
+            "gravity_j": -float(weighed * (gx * x + gy * y)),
+            "elastic_j": rim_energy(ring, now[0]),
+        }
