@@ -82,15 +82,30 @@ def test_a_coil_that_is_shorter_than_its_free_length_hangs_slack():
     assert force_and_tangent(0, free + 1e-3, 0.5, COIL)[0] == pytest.approx(78.9e-3, rel=0.01)
 
 
-def test_a_coil_pushes_like_a_rod_below_its_solid_height():
+def test_a_coil_in_a_guide_pushes_like_a_rod_below_its_solid_height():
+    guided = coils_of(ring_coil(k_s=2000), 1)
     solid = (88.02 + 1) * 0.1e-3
 
-    above, _ = force_and_tangent(0, solid + 1e-6, 1.0, COIL)
-    below, rate = force_and_tangent(0, solid - 1e-4, 1.0, COIL)
+    above, _ = force_and_tangent(0, solid + 1e-6, 1.0, guided)
+    below, rate = force_and_tangent(0, solid - 1e-4, 1.0, guided)
 
     assert above == 0
     assert below == pytest.approx(-0.2)
     assert rate == 2000
+
+
+def test_a_free_closed_coil_gives_way_under_its_buckling_load():
+    """Its turns bend and twist in series, half of the wire each."""
+    numbers, L = ring_coil(), COIL.L_s[0]
+    G = np.array([numbers.G_M, numbers.G_A])
+    E, moment = 2.66 * G, pi * numbers.d**4 / 64
+
+    rigidity = L / (0.5 * numbers.L_w * (1 / (E * moment) + 1 / (2 * G * moment)))
+    buckling = pi**2 * rigidity / L**2
+
+    pushes = -force_and_tangent(0, L - 2e-3, 1.0, COIL)[0]
+    assert buckling[0] < pushes < buckling[1]
+    assert buckling == pytest.approx([1.2e-3, 3.3e-3], rel=0.05)
 
 
 @settings(deadline=None)  # the first call compiles

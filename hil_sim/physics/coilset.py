@@ -35,7 +35,7 @@ class CoilNumbers:
     G_A: float  # shear modulus, austenite [Pa]
     G_M: float  # shear modulus, martensite (secant) [Pa]
     gamma: float  # transformation shear strain [1]
-    k_s: float  # stiffness of the closed winding, one-sided [N/m]
+    k_s: float  # stiffness of the closed winding, one-sided, see spring.py [N/m]
     A_s: float  # austenite begins on heating, unloaded [degC]
     A_f: float  # austenite complete [degC]
     M_s: float  # martensite begins on cooling [degC]

@@ -2,15 +2,20 @@ r"""Force of a shape-memory coil spring between two attachments, and its tangent
 
 .. math::  F = k(\xi) \max(0, L - L_A - \xi \, \Delta L) - k_s \max(0, L_s - L), \quad k = k_A + \xi (k_M - k_A)  (S1)
 
-The coil pulls (F > 0), hangs slack (F = 0) or, pressed below its solid height `L_s = (n + 1) d`, pushes like a rod (F
-< 0). The tangent dF/dL is exact on each side of the two kinks. Source: two-state spring of the locomotion prototype;
-(S1) second term derived here, ASSUMED: a closed winding neither buckles nor rubs. Shear strain for the resistance:
-gamma = d (L - L_A)/(pi D^2 n).
+The coil pulls (F > 0), hangs slack (F = 0) or, pressed below its solid height, pushes (F < 0). The tangent dF/dL is
+exact on each side of the two kinks. In a guide the closed winding pushes like a rod. A free one buckles under
 
-.. math::  R = [R_A + \xi (R_M - R_A)] \, [1 + k_R \max(L - L_A, \xi \, \Delta L)]                                (S2)
+.. math::  F_b = \frac{\pi^2 B}{L_s^2}, \quad B = \frac{4 L_s E I G}{L_w (2 G + E)}, \quad I = \frac{\pi d^4}{64}  (S2)
 
-Source: resistance ratio 0.92 measured on BMX150 (scientific.net/MSF.978.421). Checked in
-tests/test_physics_coil_spring.py.
+which is 3 mN for austenite and 1 mN for martensite in the circular robot, whose coils pull 100 to 400 mN; `k_s` is
+then so small that the push stays of this order over the few millimetres that occur. Source: two-state spring of the
+locomotion prototype; buckling load of a pinned helix by its bending rigidity, standard result. ASSUMED: turns do not
+rub, and a buckled coil keeps to its line. The resistance follows phase and stretch:
+
+.. math::  R = [R_A + \xi (R_M - R_A)] \, [1 + k_R \max(L - L_A, \xi \, \Delta L)]                                (S3)
+
+with k_R = k_e d / (pi D^2 n), k_e per unit of shear strain. Source: ratio R_A / R_M of 0.92 measured on BMX150
+(scientific.net/MSF.978.421). Checked in tests/test_physics_coil_spring.py.
 """
 
 from hil_sim.physics.coilset import Coils
@@ -80,7 +85,7 @@ def force_and_tangent(i: int, L: float, xi: float, coils: Coils) -> tuple[float,
 
 @kernel
 def resistance(i: int, L: float, xi: float, coils: Coils) -> float:
-    r"""Return the resistance of coil i, equation (S2).
+    r"""Return the resistance of coil i, equation (S3).
 
     Parameters
     ----------
