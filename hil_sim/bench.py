@@ -32,9 +32,17 @@ FloatArray = NDArray[np.float64]
 class Plant(Protocol):
     """The body: coils and what they move."""
 
-    labels: Sequence[str]
-    resistance: FloatArray
-    temperature: FloatArray
+    @property
+    def labels(self) -> Sequence[str]:
+        """The coils."""
+
+    @property
+    def resistance(self) -> FloatArray:
+        """Their resistances [ohm]; infinite for an open one."""
+
+    @property
+    def temperature(self) -> FloatArray:
+        """Their temperatures [degC]."""
 
     def advance(self, duration_us: int, coil_power_w: FloatArray) -> None:
         """Let time pass with constant power in each coil."""

@@ -45,6 +45,8 @@ class Ina226:
         self.alive = True
         self._clock = clock
         self._source = source
+        self._settled = False  # the last conversion and all since saw no change: its results repeat
+        self._pure = True  # nothing has changed since this conversion began
         self.reset()
 
     def reset(self) -> None:
@@ -135,8 +137,7 @@ class Ina226:
         self._cycle_us = (self._shunt_us + self._bus_us) * self._averages
         self._begun_us = self._seen_us = self._clock.now_us
         self._shunt_sum = self._bus_sum = 0.0
-        self._pure = True  # nothing has changed since this conversion began
-        self._settled = False  # nor during the one before: its results repeat
+        self._pure, self._settled = True, False
 
     def _skip(self, now_us: int) -> None:
         """Leave out conversions whose results nobody can see: all but the last one before now."""

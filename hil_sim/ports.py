@@ -1,0 +1,257 @@
+"""Real ports in front of a bench: a pseudo-terminal, a TCP port, and the wall clock they keep pace with.
+
+Pacing is a wrapper around virtual time: the bench never learns of it, and bytes take their baud rate's time because
+the virtual line makes them. When this process is held up, virtual time waits with it; it never jumps to catch up.
+
+    with Pty(link=Path("robot")) as pty:
+        serve(bench, [pty], Pace(speed=1.0), ended)
+"""
+
+import json
+import os
+import select
+import socket
+import tempfile
+import termios
+import time
+import tty
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Protocol, Self
+
+from hil_sim.bench import Bench
+
+STALL_S = 0.020
+TICK_S = 0.001
+CHUNK = 65_536
+
+
+class PortError(OSError):
+    """A port or link that cannot be made; the text says why."""
+
+
+class Port(Protocol):
+    """Where bytes of a host come from and go to."""
+
+    def handles(self) -> list[int]:
+        """Return the file descriptors that may become readable."""
+
+    def read(self) -> bytes:
+        """Return what has come in."""
+
+    def write(self, data: bytes) -> None:
+        """Pass bytes on; what nobody takes is lost, as on a wire."""
+
+
+class Pace:
+    """Wall time turned into virtual time. `slipped_s` is how long this process has been held up."""
+
+    def __init__(self, speed: float, wall_s: Callable[[], float] = time.monotonic) -> None:
+        self.slipped_s = 0.0
+        self._speed = speed
+        self._wall_s = wall_s
+        self._seen_s = wall_s()
+        self._rest_us = 0.0
+
+    def passed_us(self) -> int:
+        """Return how much virtual time has passed since the last call, at most STALL_S of wall time's worth."""
+        now_s = self._wall_s()
+        passed_s = min(now_s - self._seen_s, STALL_S)
+        self.slipped_s += now_s - self._seen_s - passed_s
+        self._seen_s = now_s
+        self._rest_us += passed_s * 1e6 * self._speed
+        whole_us = int(self._rest_us)
+        self._rest_us -= whole_us
+        return whole_us
+
+
+def serve(bench: Bench, ports: Sequence[Port], pace: Pace, ended: Callable[[], bool]) -> None:
+    """Run the bench in step with the wall clock between its ports until `ended` says so."""
+    line = bench.board.uart
+    while not ended():
+        select.select([handle for port in ports for handle in port.handles()], [], [], TICK_S)
+        bench.clock.run_until(bench.clock.now_us + pace.passed_us())
+        for port in ports:
+            data = port.read()
+            if data:
+                bench.board.host_write(data)
+        data = line.host_read(bench.clock.now_us)
+        if data:
+            for port in ports:
+                port.write(data)
+
+
+class Pty:
+    """A pseudo-terminal in raw mode, at `path`; and at `link`, where one is asked for, as long as it lives.
+
+    The far end is kept open here, so hosts may come and go.
+    """
+
+    def __init__(self, link: Path | None = None) -> None:
+        _check_link(link)
+        self._near, self._far = os.openpty()
+        tty.setraw(self._far)
+        os.set_blocking(self._near, False)
+        self.path = os.ttyname(self._far)
+        self.link = link
+        if link is not None:
+            _place_link(link, self.path)
+
+    def handles(self) -> list[int]:
+        """Return the near end."""
+        return [self._near]
+
+    def read(self) -> bytes:
+        """Return what the host has written."""
+        try:
+            return os.read(self._near, CHUNK)
+        except BlockingIOError:
+            return b""
+
+    def write(self, data: bytes) -> None:
+        """Let the host read; when nobody has for a while, what waits is dropped, so that a new host finds no past."""
+        try:
+            os.write(self._near, data)
+        except BlockingIOError:
+            termios.tcflush(self._far, termios.TCIFLUSH)
+
+    def close(self) -> None:
+        """Take the terminal and its link away."""
+        if self.link is not None and self.link.is_symlink() and os.readlink(self.link) == self.path:
+            self.link.unlink()
+        os.close(self._near)
+        os.close(self._far)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+
+class Tcp:
+    """A TCP port on this machine only; one host at a time, the next is refused. `port` 0 takes any free one."""
+
+    def __init__(self, port: int) -> None:
+        self._listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            self._listener.bind(("127.0.0.1", port))
+        except OSError as error:
+            self._listener.close()
+            raise PortError(f"TCP port {port}: {error.strerror}") from error
+        self._listener.listen(1)
+        self._listener.setblocking(False)
+        self._host: socket.socket | None = None
+        self.port: int = self._listener.getsockname()[1]
+
+    def handles(self) -> list[int]:
+        """Return the listener and, where there is one, the host."""
+        return [self._listener.fileno(), *([self._host.fileno()] if self._host is not None else [])]
+
+    def read(self) -> bytes:
+        """Take in a new host, or return what the present one has sent."""
+        self._accept()
+        if self._host is None:
+            return b""
+        try:
+            data = self._host.recv(CHUNK)
+        except BlockingIOError:
+            return b""
+        except OSError:
+            data = b""
+        if not data:
+            self._leave()
+        return data
+
+    def write(self, data: bytes) -> None:
+        """Send to the host if there is one."""
+        if self._host is None:
+            return
+        try:
+            self._host.send(data)
+        except BlockingIOError:
+            pass
+        except OSError:
+            self._leave()
+
+    def close(self) -> None:
+        """Stop listening and hang up."""
+        self._leave()
+        self._listener.close()
+
+    def _accept(self) -> None:
+        try:
+            host, _ = self._listener.accept()
+        except BlockingIOError:
+            return
+        if self._host is not None:
+            host.close()
+            return
+        host.setblocking(False)
+        host.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self._host = host
+
+    def _leave(self) -> None:
+        if self._host is not None:
+            self._host.close()
+            self._host = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self.close()
+
+
+class Announcement:
+    """A small JSON file by which other programs of this user find a running bench; gone when it ends."""
+
+    def __init__(self, fields: Mapping[str, Any]) -> None:
+        folder = announcements()
+        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        for old in folder.glob("*.json"):
+            if not _lives(old.stem):
+                old.unlink(missing_ok=True)
+        self._file = folder / f"{os.getpid()}.json"
+        self._file.write_text(json.dumps({"pid": os.getpid(), **fields}) + "\n")
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        self._file.unlink(missing_ok=True)
+
+
+def announcements() -> Path:
+    """Return the folder of this user's announcements, PID.json each."""
+    runtime = os.environ.get("XDG_RUNTIME_DIR")
+    return Path(runtime) / "softrig" if runtime else Path(tempfile.gettempdir()) / f"softrig-{os.getuid()}"
+
+
+def _lives(pid: str) -> bool:
+    try:
+        os.kill(int(pid), 0)
+    except (ProcessLookupError, ValueError):
+        return False
+    except PermissionError:
+        pass
+    return True
+
+
+def _check_link(link: Path | None) -> None:
+    if link is None:
+        return
+    if not link.parent.is_dir():
+        raise PortError(f"link {link}: there is no folder {link.parent}")
+    if os.path.lexists(link) and not link.is_symlink():
+        raise PortError(f"link {link}: something that is not a symbolic link is there already; it stays")
+
+
+def _place_link(link: Path, path: str) -> None:
+    """Put a symbolic link in its place in one step."""
+    waiting = link.with_name(f".{link.name}.{os.getpid()}")
+    waiting.unlink(missing_ok=True)
+    waiting.symlink_to(path)
+    waiting.replace(link)
