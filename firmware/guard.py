@@ -46,14 +46,14 @@ class Guard:
         return self._heat()
 
     def _heat(self) -> int:
-        if not self._channels.on_mask:
+        sense = self._sense
+        hottest, fullest = sense.hottest, sense.fullest
+        if hottest < 0:
             return 0
-        channel = self._sense.hottest()
-        if self._sense.temperature_millidegc[channel] > self._coil.trip_decidegc * 100:
-            return self._fault(codes.OVER_TEMPERATURE, self._sense.temperature_millidegc[channel] // 100, channel)
-        channel = self._sense.over_budget()
-        if channel >= 0 and self._channels.on_mask >> channel & 1:
-            return self._fault(codes.HEAT_BUDGET, self._sense.heat_uj[channel] // 1000, channel)
+        if sense.temperature_millidegc[hottest] > self._coil.trip_decidegc * 100:
+            return self._fault(codes.OVER_TEMPERATURE, sense.temperature_millidegc[hottest] // 100, hottest)
+        if sense.heat_uj[fullest] > self._coil.heat_budget_mj * 1000:
+            return self._fault(codes.HEAT_BUDGET, sense.heat_uj[fullest] // 1000, fullest)
         return 0
 
     def _stray(self, now_ms: int) -> bool:

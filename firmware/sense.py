@@ -16,7 +16,9 @@ class Sense:
         self.current_ma = 0
         self.board_decidegc = 250
         self.temperature_millidegc = array("i", [25_000] * count)
-        self.heat_uj = array("i", [0] * count)
+        self.heat_uj = array("i", [0] * count)  # taken and not yet leaked away
+        self.hottest = -1  # among the coils that are on, the one with the highest estimate; -1: none is on
+        self.fullest = -1  # and the one nearest to its heat budget
         self._martensite_permille = array("i", [1000] * count)
         self._rest_nj = array("i", [0] * count)
         self._seen_ms = array("i", [0] * count)
@@ -52,28 +54,29 @@ class Sense:
 
     def update(self, now_ms: int, on_mask: int, duty_permille: array) -> None:
         """Bring the estimates up to now: coils that are on at each step, the others in turn."""
+        self.hottest = self.fullest = -1
         turn = self._turn % self._count
-        for channel in range(self._count):
-            if on_mask >> channel & 1 or channel == turn:
-                passed_ms = now_ms - self._seen_ms[channel]
-                self._seen_ms[channel] = now_ms
-                self._heat(channel, self._full_uw * duty_permille[channel] // 1000, passed_ms)
+        if not on_mask >> turn & 1:
+            self._catch_up(turn, now_ms, 0)
+        channel = 0
+        while on_mask:
+            if on_mask & 1:
+                self._catch_up(channel, now_ms, self._full_uw * duty_permille[channel] // 1000)
+                self._rank(channel)
+            on_mask >>= 1
+            channel += 1
 
-    def hottest(self) -> int:
-        """Return the channel with the highest estimate."""
-        best = 0
-        for channel in range(1, self._count):
-            if self.temperature_millidegc[channel] > self.temperature_millidegc[best]:
-                best = channel
-        return best
+    def _catch_up(self, channel: int, now_ms: int, power_uw: int) -> None:
+        passed_ms = now_ms - self._seen_ms[channel]
+        if passed_ms:
+            self._seen_ms[channel] = now_ms
+            self._heat(channel, power_uw, passed_ms)
 
-    def over_budget(self) -> int:
-        """Return a channel that took more than its heat budget, or -1."""
-        limit_uj = self._coil.heat_budget_mj * 1000
-        for channel in range(self._count):
-            if self.heat_uj[channel] > limit_uj:
-                return channel
-        return -1
+    def _rank(self, channel: int) -> None:
+        if self.hottest < 0 or self.temperature_millidegc[channel] > self.temperature_millidegc[self.hottest]:
+            self.hottest = channel
+        if self.fullest < 0 or self.heat_uj[channel] > self.heat_uj[self.fullest]:
+            self.fullest = channel
 
     def _read_supply(self) -> None:
         self.supply_mv = self._monitor.voltage_mv()

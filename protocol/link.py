@@ -18,6 +18,7 @@ WINDOW = 8  # frames on the way at once
 QUEUE_MAX = 64
 TRIES_MAX = 12
 RTO_FIRST_MS = 250
+RTO_MIN_MS = 100  # a full window of long frames takes that long at 115200 baud
 RTO_MAX_MS = 1000
 
 Received = namedtuple("Received", ("kind", "seq", "payload"))
@@ -155,7 +156,7 @@ class Link:
         else:
             self._spread_ms += (abs(rtt_ms - self.rtt_ms) - self._spread_ms) // 4
             self.rtt_ms += (rtt_ms - self.rtt_ms) // 8
-        self._rto_ms = min(max(self.rtt_ms + 4 * self._spread_ms, 20), RTO_MAX_MS)
+        self._rto_ms = min(max(self.rtt_ms + 4 * self._spread_ms, RTO_MIN_MS), RTO_MAX_MS)
 
     def _due(self, waiting: Waiting, now_ms: int) -> bool:
         if waiting.tries == 0:
