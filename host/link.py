@@ -59,8 +59,10 @@ def open_link(address: str) -> Link:
         return open_serial(address)
     try:
         link: Link = schemes[scheme].load()(address)
-    except (OSError, LookupError, ValueError) as error:
-        raise NoRobot(f"{address}: {_one_line(error)}") from error
+    except (OSError, LookupError) as error:
+        raise NoRobot(f"{address}: {error}") from error
+    except ValueError as error:
+        raise BadRequest(f"{address}: {error}") from error
     return link
 
 

@@ -20,7 +20,24 @@ from host.run import Ending
 from protocol import codes
 
 ENERGY = "duty x (measured supply / (coil + wiring))^2 x coil, resistances of the profile"
+SEEN = {
+    "travel_mm": "{:.1f} mm",
+    "lateral_mm": "{:.1f} mm",
+    "rotation_deg": "{:.1f} deg",
+    "apex_mm": "{:.2f} mm",
+    "clearance_mm": "{:.2f} mm",
+    "peak_coil_degc": "{:.1f} C",
+    "peak_coil_force_n": "{:.3f} N",
+}
 Fields = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Took:
+    """How long a run took: on the wall's clock, and on the line's."""
+
+    wall_s: float
+    line_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,19 +49,18 @@ class Facts:
     info: Fields
     statistics: Fields
     observer: Any
-    wall_s: float
+    took: Took
 
 
 def report(ending: Ending | None, recording: Recording, facts: Facts) -> Fields:
     """Return the report as it stands on `--json`; without an ending it is that of a dry run."""
-    duration_s = _duration_s(recording)
     fields: Fields = {
         "result": ending.result if ending else "dry run",
         "script": facts.compiled.script.main.name,
         "parameters": {name: str(value) for name, value in facts.compiled.params.items()},
         "address": facts.address,
         **{name: facts.info[name] for name in ("robot", "firmware", "protocol", "dictionary")},
-        "duration_s": duration_s,
+        "duration_s": _duration_s(recording),
         "coils": coils(recording, facts.compiled.profile),
         "energy_is": ENERGY,
         "faults": [fault(event, recording, facts.compiled) for event in recording.events if event.code],
@@ -52,8 +68,8 @@ def report(ending: Ending | None, recording: Recording, facts: Facts) -> Fields:
     }
     if facts.observer is not None:
         fields["observed"] = _rounded(facts.observer.observe())
-    factor = round(duration_s / facts.wall_s, 1) if facts.wall_s else None
-    fields["wall"] = {"time_s": round(facts.wall_s, 3), "real_time_factor": factor}
+    took = facts.took
+    fields["wall"] = {"time_s": round(took.wall_s, 3), "real_time_factor": round(took.line_s / took.wall_s, 1)}
     return fields
 
 
@@ -93,12 +109,12 @@ def fault(event: Event, recording: Recording, compiled: Compiled) -> Fields:
 def lines(fields: Fields) -> Iterator[str]:
     """Yield the report as a user reads it."""
     yield f"{fields['script']} on {fields['address']}: {fields['result']}"
-    yield f"  robot      {fields['robot']}, {fields['firmware']}, dictionary {fields['dictionary']}"
+    yield f"  robot            {fields['robot']}, {fields['firmware']}, dictionary {fields['dictionary']}"
     for name, value in fields["parameters"].items():
-        yield f"  parameter  {name} = {value}"
+        yield f"  parameter        {name} = {value}"
     wall = fields["wall"]
-    factor = f" ({wall['real_time_factor']:g} x real time)" if wall["real_time_factor"] else ""
-    yield f"  time       {fields['duration_s']:.2f} s, took {wall['time_s']:.2f} s{factor}"
+    factor = f"{wall['real_time_factor']:g} x real time"
+    yield f"  time             {fields['duration_s']:.2f} s, took {wall['time_s']:.2f} s ({factor})"
     yield from _observed_lines(fields.get("observed", {}))
     yield "  coil    on time   energy   peak (estimate)"
     for label, coil in fields["coils"].items():
@@ -109,21 +125,17 @@ def lines(fields: Fields) -> Iterator[str]:
         where = f", line {item['line']}" if item["line"] else ""
         coil = f", coil {item['coil']}" if item["coil"] else ""
         value = f" {item['value']} {item['unit']}" if item["unit"] else ""
-        yield f"  fault      {item['code']} at {item['at_s']:.2f} s{where}{coil}: {item['cause']}{value}"
+        yield f"  fault            {item['code']} at {item['at_s']:.2f} s{where}{coil}: {item['cause']}{value}"
     link = fields["link"]
-    yield (
-        f"  line       {link['bytes_sent']} bytes out, {link['bytes_received']} in, {link['frames_resent']} resent, "
-        f"{link['frames_damaged']} damaged, {link['telemetry_missed']} missed"
-    )
+    traffic = f"{link['bytes_sent']} bytes out, {link['bytes_received']} in, {link['frames_resent']} frames resent"
+    yield f"  line             {traffic}, {link['frames_damaged']} damaged, {link['telemetry_missed']} missed"
 
 
 def _observed_lines(observed: Fields) -> Iterator[str]:
-    """Yield what the observer saw, one figure a line, with the unit that ends its name."""
-    units = {"mm": "mm", "deg": "deg", "degc": "C", "n": "N"}
-    for name, value in observed.items():
-        if isinstance(value, (int, float)):
-            words, _, unit = name.rpartition("_")
-            yield f"  {words.replace('_', ' '):<10} {value:.2f} {units.get(unit, unit)}"
+    """Yield what the observer saw of the body."""
+    for name, form in SEEN.items():
+        if name in observed:
+            yield f"  {name.rpartition('_')[0].replace('_', ' '):<17}{form.format(observed[name])}"
 
 
 def _rounded(value: Any) -> Any:

@@ -220,11 +220,14 @@ class Robot:
         """Write what is due, then wait for bytes until something is due again."""
         now_ms = self.now_ms()
         out = self._session.poll(now_ms)
-        if out:
-            self._keep("out", out, now_ms)
-            self.link.write(out)
         wake_ms = self._session.wake_ms(now_ms)
-        data = self.link.read((wake_ms if until_ms is None else min(wake_ms, until_ms)) / 1000)
+        try:
+            if out:
+                self._keep("out", out, now_ms)
+                self.link.write(out)
+            data = self.link.read((wake_ms if until_ms is None else min(wake_ms, until_ms)) / 1000)
+        except OSError as error:
+            raise LinkLost(f"the line broke ({error}); the robot switches its coils off by itself") from error
         if data:
             now_ms = self.now_ms()
             news = self._session.receive(data, now_ms)

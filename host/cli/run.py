@@ -17,7 +17,7 @@ from host.gait.diagnostics import GaitError
 from host.gait.script import load
 from host.link import open_link, wall_s
 from host.log import LogWriter
-from host.report import Facts, lines, report
+from host.report import Facts, Took, lines, report
 from host.robot import Robot
 from host.run import Ending, Keeper, run, upload
 from host.view import check_pictures, draw_run
@@ -57,8 +57,8 @@ def command(
             keeper.recording.title = f"{Path(script).name} on {address}"
             compiled = compile_script(tree, face.profile, params)
             _attach(log, compiled, face, address)
-            ending, took_s = _run(face, compiled, dry_run, as_json)
-            facts = Facts(compiled, address, face.info(), face.statistics(), link.observer, took_s)
+            ending, took = _run(face, compiled, dry_run, as_json)
+            facts = Facts(compiled, address, face.info(), face.statistics(), link.observer, took)
             fields = report(ending, keeper.recording, facts)
         if log:
             log.attach("report.json", json_line(fields).encode(), "application/json")
@@ -71,18 +71,19 @@ def command(
         raise error
 
 
-def _run(face: Robot, compiled: Compiled, dry_run: bool, as_json: bool) -> tuple[Ending | None, float]:
-    """Hold the script against the robot's limits, then run it; return how it ended and the seconds it took."""
+def _run(face: Robot, compiled: Compiled, dry_run: bool, as_json: bool) -> tuple[Ending | None, Took]:
+    """Hold the script against the robot's limits, then run it; return how it ended and how long it took."""
     verdict = check(compiled)
     if not verdict.sound:
         raise GaitError(verdict.diagnostics)
-    begun_s = wall_s()
+    begun = wall_s(), face.link.now_s()
+    ending = None
     with shown(len(compiled.code), verdict.longest_ms / 1000, quiet=as_json) as progress:
         if dry_run:
             upload(face, compiled.program, progress)
-            return None, wall_s() - begun_s
-        ending = run(face, compiled.program, progress)
-    return ending, wall_s() - begun_s
+        else:
+            ending = run(face, compiled.program, progress)
+    return ending, Took(wall_s() - begun[0], face.link.now_s() - begun[1])
 
 
 def _attach(log: LogWriter | None, compiled: Compiled, face: Robot, address: str) -> None:

@@ -1,0 +1,130 @@
+"""The report of a run, worked out by hand from a few records."""
+
+from dataclasses import replace
+
+import pytest
+
+from host.errors import Mismatch
+from host.gait.compiler import compile_script
+from host.gait.script import loads
+from host.profile import read_profile
+from host.recording import Recording
+from host.records import Event, Telemetry
+from host.report import Facts, Took, coils, lines, report
+from host.run import Ending
+from tests.fake_robot import PROFILE
+
+SCRIPT = "gait 1\nrobot circular\nparam duty = 60 %\nfire A at $duty for 600 ms\n"
+INFO = {"robot": "circular", "firmware": "0.1.0", "protocol": 1, "dictionary": "1648c81d", "state": "idle"}
+LINE = {"bytes_sent": 1, "bytes_received": 2, "frames_resent": 0, "frames_damaged": 0, "telemetry_missed": 0}
+
+
+class Watcher:
+    def observe(self) -> dict:
+        return {"travel_mm": 12.345678, "peak_coil_degc": 81.0}
+
+
+@pytest.fixture
+def profile():
+    return read_profile(PROFILE)
+
+
+@pytest.fixture
+def facts(profile):
+    compiled = compile_script(loads(SCRIPT), profile)
+    return Facts(compiled, "sim:circular", INFO, LINE, Watcher(), Took(wall_s=0.5, line_s=20.0))
+
+
+def record(now_ms: int, duty_permille: int, degc: float, supply_mv: int = 2000) -> Telemetry:
+    rest = len(read_profile(PROFILE).labels) - 1
+    duties, temperatures = (duty_permille, *[0] * rest), (degc, *[25.0] * rest)
+    return Telemetry(now_ms + 3, now_ms, "running", 1, supply_mv, 100, 25.0, duties, temperatures)
+
+
+def recording() -> Recording:
+    seen = Recording(("A",))
+    seen.telemetry += [record(0, 500, 30.0), record(400, 1000, 70.0, 1900), record(600, 0, 85.5), record(1000, 0, 60.0)]
+    seen.events += [Event(3, 0, "started", 0, 0, None, 0), Event(1003, 1000, "finished", 0, 1, None, 0)]
+    return seen
+
+
+def done() -> Ending:
+    return Ending("done", recording().events[-1])
+
+
+def test_on_time_and_energy_are_summed_over_the_telemetry(profile):
+    coil = coils(recording(), profile)["A"]
+
+    at_2_0_v = (2.0 / (9.7 + 0.52)) ** 2 * 9.7
+    at_1_9_v = (1.9 / (9.7 + 0.52)) ** 2 * 9.7
+    assert coil["on_s"] == 0.6
+    assert coil["energy_j"] == pytest.approx(0.4 * 0.5 * at_2_0_v + 0.2 * at_1_9_v, abs=1e-4)
+    assert coil["peak_estimated_degc"] == 85.5
+
+
+def test_a_report_says_what_ran_where_and_with_what_result(facts):
+    fields = report(done(), recording(), facts)
+
+    assert fields["result"] == "done"
+    assert fields["parameters"] == {"duty": "60 %"}
+    assert fields["duration_s"] == 1.0
+    assert fields["observed"] == {"travel_mm": 12.3457, "peak_coil_degc": 81.0}
+    assert fields["wall"] == {"time_s": 0.5, "real_time_factor": 40.0}
+
+
+def test_a_report_without_an_observer_claims_nothing_about_the_body(facts):
+    assert "observed" not in report(done(), recording(), replace(facts, observer=None))
+
+
+def test_a_fault_is_told_with_its_code_coil_value_and_line(facts):
+    seen = recording()
+    seen.events[-1] = Event(1003, 1000, "tripped", 105, 1, "A", 1213)
+
+    (fault,) = report(Ending("fault", seen.events[-1]), seen, facts)["faults"]
+
+    assert fault["code"] == "F05"
+    assert (fault["coil"], fault["value"], fault["unit"]) == ("A", 1213, "0.1 C")
+    assert (fault["at_s"], fault["line"]) == (1.0, 4)
+
+
+def test_a_report_of_nothing_is_still_a_report(facts):
+    fields = report(None, Recording(("A",)), facts)
+
+    assert fields["result"] == "dry run"
+    assert fields["coils"]["A"] == {"on_s": 0.0, "energy_j": 0.0, "peak_estimated_degc": None}
+    assert any("dry run" in line for line in lines(fields))
+
+
+def test_the_text_names_only_coils_that_were_on(facts):
+    text = "\n".join(lines(report(done(), recording(), facts)))
+
+    assert "A        0.60 s" in text
+    assert "\n  B " not in text
+    assert "travel           12.3 mm" in text
+
+
+def test_the_clock_of_the_robot_may_wrap_during_a_run(facts):
+    seen = recording()
+    seen.events[0] = Event(3, 2**32 - 500, "started", 0, 0, None, 0)
+    seen.events[1] = Event(1003, 500, "finished", 0, 1, None, 0)
+
+    assert report(done(), seen, facts)["duration_s"] == 1.0
+
+
+def test_a_profile_knows_labels_groups_and_masks(profile):
+    assert profile.labels == tuple("ABCDEFGH")
+    assert profile.mask(["A", "C"]) == 0b101
+    assert profile.mask(["all"]) == 0xFF
+    assert profile.named(0b1000_0001) == ("A", "H")
+
+
+def test_a_profile_from_a_newer_robot_may_say_more(profile):
+    more = PROFILE.replace(b'"trip_degc"', b'"colour": 3, "trip_degc"')
+
+    assert read_profile(more).coil == profile.coil
+
+
+@pytest.mark.parametrize("text", [b"", b"[]", b"{}", PROFILE.replace(b"as_degc", b"as_degf"), PROFILE[:-20]])
+def test_a_profile_that_cannot_be_used_is_a_mismatch(text):
+    with pytest.raises(Mismatch, match="profile cannot be read"):
+        read_profile(text)
