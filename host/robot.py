@@ -11,6 +11,7 @@ every coil off as far as the line allows; leaving it by Ctrl-C sends stop and sa
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from typing import Any, Protocol
 
 from host.errors import Interrupted, LinkLost, Refused, Silent, SoftrigError
@@ -56,8 +57,10 @@ class Robot:
         try:
             if isinstance(error, KeyboardInterrupt):
                 raise self._interrupted() from error
-            if self._session.holds_lease:
-                self._leave(error)
+            if error is not None:
+                self.leave()
+            elif self._session.holds_lease:
+                self._goodbye()
         finally:
             self.link.close()
 
@@ -124,6 +127,17 @@ class Robot:
 
     def leave_armed(self) -> None:
         """Go without disarming: the robot disarms itself when its lease runs out."""
+        self._session.holds_lease = False
+
+    def leave(self) -> None:
+        """Switch everything off as far as the line still allows; raises nothing of ours."""
+        if not self._session.holds_lease:
+            return
+        with suppress(SoftrigError):
+            try:
+                self._goodbye()
+            except LinkLost:
+                self.stop(GOODBYE_MS)
         self._session.holds_lease = False
 
     def clear(self) -> None:
@@ -254,14 +268,6 @@ class Robot:
         """Return a session with a number made of the clock, which no other host is likely to share."""
         now_ms = self.now_ms()
         return Session(round(self.link.now_s() * 1e6) * 2654435761 % 0xFFFFFFFF + 1, now_ms)
-
-    def _leave(self, error: BaseException | None) -> None:
-        """Switch everything off on the way out; an error that is already on its way goes first."""
-        try:
-            self._goodbye()
-        except SoftrigError:
-            if error is None:
-                raise
 
     def _goodbye(self) -> None:
         """Disarm, and stop a robot that does not answer to that."""

@@ -87,6 +87,7 @@ def run(robot: Robot, code: bytes, progress: Progress) -> Ending:
         if event.event in ("finished", "aborted"):
             robot.disarm()
     except LinkLost as lost:
+        robot.leave()
         return Ending("link lost", None, lost)
     return Ending(_result(event), event)
 

@@ -55,8 +55,9 @@ def done() -> Ending:
 def test_on_time_and_energy_are_summed_over_the_telemetry(profile):
     coil = coils(recording(), profile)["A"]
 
-    at_2_0_v = (2.0 / (9.7 + 0.52)) ** 2 * 9.7
-    at_1_9_v = (1.9 / (9.7 + 0.52)) ** 2 * 9.7
+    ohm, wiring_ohm = profile.coil.resistance_mohm / 1000, profile.coil.wiring_mohm / 1000
+    at_2_0_v = (2.0 / (ohm + wiring_ohm)) ** 2 * ohm
+    at_1_9_v = (1.9 / (ohm + wiring_ohm)) ** 2 * ohm
     assert coil["on_s"] == 0.6
     assert coil["energy_j"] == pytest.approx(0.4 * 0.5 * at_2_0_v + 0.2 * at_1_9_v, abs=1e-4)
     assert coil["peak_estimated_degc"] == 85.5

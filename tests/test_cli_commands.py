@@ -1,0 +1,318 @@
+"""The commands, against a fake robot: what they print, and the exit status of every ending."""
+
+import json
+from types import SimpleNamespace
+
+import pytest
+
+from host.cli import main
+from protocol import codes, messages
+from tests.fake_robot import PROFILE, FakeLine, FakeRobot
+
+LIMITS = json.loads(PROFILE)["coil"]
+SCRIPT = "gait 1\nrobot circular\nparam duty = 60 % [5 % .. 90 %]\nfire A at $duty for 400 ms\n"
+
+
+@pytest.fixture
+def peer():
+    return FakeRobot()
+
+
+@pytest.fixture
+def line(peer, monkeypatch):
+    """A line to `peer`, at the address fake:."""
+    line = FakeLine(peer)
+    point = SimpleNamespace(name="fake", load=lambda: lambda address: line)
+    monkeypatch.setattr("host.link.entry_points", lambda group: [point])
+    monkeypatch.setenv("SOFTRIG_ROBOT", "fake:")
+    monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
+    return line
+
+
+@pytest.fixture
+def softrig(capsys):
+    """Run a command line: (exit status, stdout, stderr)."""
+
+    def call(*arguments: str) -> SimpleNamespace:
+        with pytest.raises(SystemExit) as ended:
+            main(list(arguments))
+        printed = capsys.readouterr()
+        return SimpleNamespace(status=ended.value.code, out=printed.out, err=printed.err)
+
+    return call
+
+
+@pytest.fixture
+def script(tmp_path):
+    path = tmp_path / "a.gait"
+    path.write_text(SCRIPT)
+    return str(path)
+
+
+def names(peer) -> list[str]:
+    return [name for _, name, _ in peer.orders]
+
+
+def test_info_prints_labels_and_limits_as_the_robot_gives_them(softrig, line):
+    told = softrig("info")
+
+    assert told.status == 0
+    assert "coils       A B C D E F G H" in told.out
+    assert f"trips at {LIMITS['trip_degc']} C" in told.out
+
+
+def test_json_is_one_object_on_one_line(softrig, line):
+    told = softrig("info", "--json")
+
+    assert told.out.count("\n") == 1
+    assert json.loads(told.out)["limits"]["heat_budget_mj"] == LIMITS["heat_budget_mj"]
+
+
+def test_status_asks_the_robot(softrig, line):
+    fields = json.loads(softrig("status", "--json").out)
+
+    assert fields["state"] == "idle"
+    assert fields["supply_mv"] == 2000
+    assert fields["link"]["frames_resent"] == 0
+
+
+def test_arm_leaves_the_robot_armed(softrig, peer, line):
+    told = softrig("arm")
+
+    assert told.out == "armed; disarms itself in 500 ms\n"
+    assert "disarm" not in names(peer)
+
+
+def test_arm_for_a_time_holds_the_lease_and_disarms(softrig, peer, line):
+    softrig("arm", "--for", "2s")
+
+    assert names(peer)[-1] == "disarm"
+    assert line.now_ms - 1000 >= 2000
+
+
+def test_disarm_and_clear_tell_the_state(softrig, peer, line):
+    assert softrig("disarm").out == "idle\n"
+    assert softrig("clear").out == "idle\n"
+
+
+def test_fire_arms_fires_watches_and_disarms(softrig, peer, line):
+    told = softrig("fire", "A", "C", "--duty", "60%", "--hold", "500ms")
+
+    order = next(order for _, name, order in peer.orders if name == "fire")
+    assert (order.coils, order.duty_permille, order.hold_ms) == (0b101, 600, 500)
+    assert [name for name in names(peer) if name in ("arm", "fire", "disarm")] == ["arm", "fire", "disarm"]
+    assert told.out.splitlines()[0] == "A at 60 % for 500 ms: 85.0 C at most, as the robot estimates"
+
+
+@pytest.mark.parametrize(
+    ("text", "hold_ms"), [("500ms", 500), ("0.5s", 500), ("0.5", 500), ("2 s", 2000), (".25 s", 250)]
+)
+def test_times_are_read_as_an_operator_writes_them(softrig, peer, line, text, hold_ms):
+    softrig("fire", "A", "--duty", "10", "--hold", text)
+
+    assert next(order for _, name, order in peer.orders if name == "fire").hold_ms == hold_ms
+
+
+@pytest.mark.parametrize("text", ["fast", "5 h", "-1s", "", "1e3", "60%"])
+def test_a_time_that_is_none_is_a_mistake_of_usage(softrig, peer, line, text):
+    told = softrig("fire", "A", "--duty", "10%", "--hold", text)
+
+    assert told.status == 2
+    assert peer.orders == []
+
+
+def test_stop_needs_no_hello(softrig, peer, line):
+    peer.duty[2] = 600
+
+    told = softrig("stop")
+
+    assert told.status == 0
+    assert told.out == "stopped; channel 2 on before, none now\n"
+    assert names(peer) == []
+
+
+def test_run_prints_the_report_and_exits_0(softrig, line, script):
+    told = softrig("run", script)
+
+    assert told.status == 0
+    assert told.out.splitlines()[0] == f"{script} on fake:: done"
+
+
+def test_run_in_a_pipe_shows_no_progress(softrig, line, script):
+    assert softrig("run", script).err == ""
+
+
+def test_parameters_are_given_on_the_command_line(softrig, peer, line, script):
+    fields = json.loads(softrig("run", script, "-p", "duty=75%", "--json").out)
+
+    assert fields["parameters"] == {"duty": "75 %"}
+
+
+def test_a_dry_run_uploads_and_does_not_arm(softrig, peer, line, script):
+    told = softrig("run", script, "--dry-run", "--json")
+
+    assert json.loads(told.out)["result"] == "dry run"
+    assert "code" in names(peer)
+    assert not {"arm", "start"} & set(names(peer))
+
+
+def test_check_uploads_nothing(softrig, peer, line, script):
+    told = softrig("check", script)
+
+    assert told.status == 0
+    assert "keeps the limits of circular" in told.out
+    assert set(names(peer)) == {"hello", "dictionary"}
+
+
+def test_a_script_over_the_limits_is_refused_before_anything_is_uploaded(softrig, peer, line, tmp_path):
+    path = tmp_path / "hot.gait"
+    path.write_text("gait 1\nrobot circular\nfire A at 100 % for 9 s\n")
+
+    told = softrig("run", str(path), "--json")
+
+    assert told.status == 4
+    assert f"{path}:3:" in told.err
+    assert json.loads(told.out)["diagnostics"][0]["code"] == "E306"
+    assert "program" not in names(peer)
+
+
+def test_a_script_for_another_robot_is_refused(softrig, line, tmp_path):
+    path = tmp_path / "other.gait"
+    path.write_text("gait 1\nrobot sphere\nfire A at 10 % for 100 ms\n")
+
+    told = softrig("check", str(path))
+
+    assert told.status == 4
+    assert "E300" in told.err
+
+
+def test_a_guard_that_holds_ends_in_1_with_the_report(softrig, peer, line, script):
+    peer.ending = (messages.TRIP, codes.GUARD, 0, 1100)
+
+    told = softrig("run", script, "--json")
+
+    assert told.status == 1
+    assert json.loads(told.out.splitlines()[0])["faults"][0]["code"] == "F10"
+    assert told.err.startswith("softrig: the script ended early: F10")
+
+
+def test_an_absent_port_exits_3(softrig):
+    told = softrig("status", "--robot", "/dev/no-such-port")
+
+    assert told.status == 3
+    assert told.err == "softrig: no port /dev/no-such-port: `softrig ports` lists those there are\n"
+
+
+def test_a_silent_port_exits_3(softrig, peer, line):
+    peer.deaf = True
+
+    assert softrig("info").status == 3
+
+
+def test_a_refusal_exits_4_and_tells_its_code(softrig, peer, line):
+    peer.refuse["arm"] = (codes.TRIPPED, 255, 105, 0)
+
+    told = softrig("arm", "--json")
+
+    assert told.status == 4
+    assert json.loads(told.out)["code"] == "R02"
+
+
+def test_another_dictionary_exits_5(softrig, peer, monkeypatch, line):
+    line.robot = FakeRobot(dictionary=messages.dictionary(PROFILE).replace(b"fire ", b"heat "))
+
+    told = softrig("info")
+
+    assert told.status == 5
+    assert "- 20 fire" in told.err
+
+
+def test_a_fault_during_fire_exits_6(softrig, peer, line):
+    line.at[1300] = lambda: peer.tell(messages.TRIP, codes.OVER_CURRENT, 255, 1600, line.now_ms)
+
+    told = softrig("fire", "A", "--duty", "60%", "--hold", "500ms")
+
+    assert told.status == 6
+    assert "F06 The supply current is above its limit. 1600 mA." in told.err
+
+
+def test_a_cut_cable_exits_7_with_the_report(softrig, line, script):
+    line.at[1200] = lambda: setattr(line, "cut", True)
+
+    told = softrig("run", script, "--json")
+
+    assert told.status == 7
+    assert json.loads(told.out.splitlines()[0])["result"] == "link lost"
+
+
+def test_ctrl_c_stops_the_robot_says_so_and_exits_130(softrig, peer, line, script):
+    def interrupt() -> None:
+        raise KeyboardInterrupt
+
+    line.at[1300] = interrupt
+
+    told = softrig("run", script)
+
+    assert told.status == 130
+    assert "stop acknowledged" in told.err
+    assert peer.stops >= 1
+
+
+def test_a_log_is_written_read_and_exported(softrig, line, script, tmp_path):
+    log, table = str(tmp_path / "run.mcap"), tmp_path / "run.csv"
+    softrig("run", script, "--log", log)
+
+    info = json.loads(softrig("log", "info", log, "--json").out)
+    exported = softrig("log", "export", log, "-o", str(table))
+
+    assert info["complete"]
+    assert info["versions"]["robot"] == "circular"
+    assert {"dictionary.txt", "versions.json", "report.json", script} == set(info["attachments"])
+    assert exported.status == 0
+    assert table.read_text().startswith("host_ms,now_ms,state,step,supply_mv")
+
+
+def test_a_lost_link_leaves_a_complete_log(softrig, line, script, tmp_path):
+    log = str(tmp_path / "run.mcap")
+    line.at[1200] = lambda: setattr(line, "cut", True)
+
+    softrig("run", script, "--log", log)
+
+    assert json.loads(softrig("log", "info", log, "--json").out)["complete"]
+
+
+def test_every_code_of_both_tables_is_explained(softrig):
+    listed = softrig("explain").out
+
+    assert all(f"\n{row.name}  " in listed for row in codes.CODES)
+    assert softrig("explain", "f05").out.splitlines()[1] == (
+        "  cause      A coil's estimated temperature is above its limit."
+    )
+    assert json.loads(softrig("explain", "E141", "--json").out)["code"] == "E141"
+
+
+def test_an_unknown_code_is_a_mistake_of_usage(softrig):
+    assert softrig("explain", "F99").status == 2
+
+
+def test_an_unknown_command_is_answered_with_the_nearest(softrig):
+    told = softrig("statsu")
+
+    assert told.status == 2
+    assert "did you mean 'status'?" in told.err
+
+
+def test_a_command_that_needs_a_robot_says_how_to_name_it(softrig, monkeypatch):
+    monkeypatch.delenv("SOFTRIG_ROBOT", raising=False)
+
+    told = softrig("status")
+
+    assert told.status == 2
+    assert "SOFTRIG_ROBOT" in told.err
+
+
+def test_a_script_that_is_not_there_is_said_so(softrig):
+    told = softrig("check", "no-such.gait")
+
+    assert told.status == 2
+    assert "no-such.gait" in told.err
