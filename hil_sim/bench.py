@@ -95,7 +95,6 @@ class Bench:
         self._hot = False
         self._peak_degc = plant.temperature.copy()
         self._energy_j = np.zeros(len(self.coils))
-        self._solve()
         self.clock.at(GRID_US, self._grid)
         self.world.power_on()
 
@@ -159,13 +158,17 @@ class Bench:
     def _grid(self) -> None:
         self._advance()
         if self._hot:  # resistances have changed
-            self._solve()
+            self.board.monitor.before_change()
+            self.supply.solve(self.plant.resistance)
         self.clock.at(self.clock.now_us + GRID_US, self._grid)
 
     def _gates_changed(self) -> None:
         self._advance()
-        self._solve()
-        for coil, (_, width) in zip(self.coils, self.board.gates(), strict=True):
+        self.board.monitor.before_change()
+        gates = self.board.gates()
+        self.supply.drive(gates, self.board.pwm_period_us())
+        self.supply.solve(self.plant.resistance)
+        for coil, (_, width) in zip(self.coils, gates, strict=True):
             coil.switch(width, self.clock.now_us)
         self._hot = any(coil.duty for coil in self.coils)
 
@@ -179,7 +182,3 @@ class Bench:
         if self._hot:
             self._energy_j += self.supply.power_w * (duration_us * 1e-6)
             np.maximum(self._peak_degc, self.plant.temperature, out=self._peak_degc)
-
-    def _solve(self) -> None:
-        self.board.monitor.before_change()
-        self.supply.drive(self.board.gates(), self.board.pwm_period_us(), self.plant.resistance)

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hil_sim.devices.pca9685 import Gate
-from hil_sim.physics.circuit import charge, circuit_of, solve
-from hil_sim.physics.window import window_charges
+from hil_sim.physics.circuit import circuit_of
+from hil_sim.physics.window import solve_period, window_charges
 
 FloatArray = NDArray[np.float64]
 
@@ -29,21 +29,19 @@ class Supply:
         self._source_ohm = source_ohm
         self._shunt_ohm = shunt_ohm
         self._voltage_v = voltage_v
+        self._on: FloatArray = np.zeros(len(series_ohm))
+        self._width: FloatArray = np.zeros(len(series_ohm))
         self._period_us = 1.0
         self._steady = True
 
-    def drive(self, gates: Sequence[Gate], period_us: float, resistance_ohm: FloatArray) -> None:
-        """Solve the circuit for gates and resistances that hold from now on."""
+    def drive(self, gates: Sequence[Gate], period_us: float) -> None:
+        """Take the gates that hold from now on; `solve` must follow."""
+        self._on, self._width = np.array(gates, float).T.copy()
         self._period_us = period_us
-        if not any(width for _, width in gates):
-            self.power_w = np.zeros(len(gates))
-            self.current_a, self._steady = 0.0, True
-            return
-        on_width = np.array(gates)
-        power_w = np.empty(len(gates))
-        solve(self._circuit, on_width[:, 0].copy(), on_width[:, 1].copy(), resistance_ohm, power_w)
-        self.power_w = power_w
-        self.current_a = charge(self._circuit, 1.0)
+
+    def solve(self, resistance_ohm: FloatArray) -> None:
+        """Work out powers and currents for resistances that hold from now on."""
+        self.current_a = solve_period(self._circuit, self._on, self._width, resistance_ohm, self.power_w)
         self._steady = self._circuit.intervals[0] == 1
 
     def steady_v(self) -> tuple[float, float] | None:

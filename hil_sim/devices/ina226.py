@@ -57,7 +57,7 @@ class Ina226:
         self._begin()
 
     def catch_up(self) -> None:
-        """Convert up to now."""
+        """Finish all conversions that have ended by now."""
         now_us = self._clock.now_us
         if self._settled:
             self._repeat(now_us)
@@ -69,16 +69,14 @@ class Ina226:
                 self._repeat(now_us)
                 return
             self._skip(now_us)
-        if self._cycle_us and now_us > self._seen_us:
-            self._integrate(now_us)
 
     def before_change(self) -> None:
         """Convert up to now with what has been on the inputs; to be called before the source changes."""
         self.catch_up()
-        if self._settled:
-            self._settled = False
-            self.catch_up()
-        self._pure = self._seen_us == self._begun_us
+        self._settled = False
+        if self._cycle_us:
+            self._integrate(self._clock.now_us)
+            self._pure = self._seen_us == self._begun_us
 
     def alert_level(self) -> int:
         """Return the level of the open-drain alert pin with its pull-up: 0 while it alerts."""

@@ -8,8 +8,8 @@ and likewise Q_b. With I from the circuit's exact solution a window shorter than
 Derived here; checked in tests/test_bench_supply.py.
 """
 
-from hil_sim.physics.circuit import Circuit, charge
-from hil_sim.physics.compiled import kernel
+from hil_sim.physics.circuit import Circuit, charge, solve
+from hil_sim.physics.compiled import Array, kernel
 
 
 @kernel
@@ -55,3 +55,29 @@ def window_charges(
             time_second += end - t
         t = end
     return drawn_first, drawn_second, time_second
+
+
+@kernel
+def solve_period(circuit: Circuit, on: Array, width: Array, R: Array, P: Array) -> float:
+    r"""Solve one PWM period as `circuit.solve` does and return the mean current of the supply.
+
+    Parameters
+    ----------
+    circuit : Circuit
+        Constants; edges, current and intervals are overwritten [SI]
+    on : array (n,)
+        Phase of each rising edge, 0 <= on < 1 [1]
+    width : array (n,)
+        Share of the period that each coil conducts [1]
+    R : array (n,)
+        Resistance of each coil; infinite for an open one [ohm]
+    P : array (n,)
+        Receives the mean power turned to heat in each coil [W]
+
+    Returns
+    -------
+    float
+        Current [A]
+    """
+    solve(circuit, on, width, R, P)
+    return charge(circuit, 1.0)
