@@ -16,7 +16,7 @@ from host.gait.plan import Delay, Fire, Loop, Op, Wait
 from host.profile import Profile
 
 STEP_MS = 5  # control step of the firmware
-EVENTS_MAX = 200_000
+EVENTS_MAX = 100_000
 
 
 class TooLong(Exception):

@@ -1,0 +1,115 @@
+"""Random scripts: the valid ones compile to what the robot accepts, the rest are refused with their reasons."""
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from host.gait.checker import check
+from host.gait.compiler import compile_script
+from host.gait.diagnostics import GaitError
+from host.gait.parser import parse_file
+from host.gait.script import loads
+from host.gait.syntax import KEYWORDS
+from protocol.program import HEADER_BYTES, check_code, read_header
+from tests.gait_scripts import HEAD, round_robot
+
+LIMITS = settings(max_examples=150, deadline=None)
+
+coils = st.lists(st.sampled_from("ABCDEFGH"), min_size=1, max_size=4, unique=True).map(" ".join)
+duties = st.integers(1, 1000).map(lambda permille: f"{permille / 10} %")
+times = st.one_of(
+    st.integers(6, 4000).map(lambda ms: f"{ms} ms"),
+    st.integers(1, 40).map(lambda tenths: f"{tenths / 10} s"),
+    st.integers(10, 400).map(lambda ms: f"2 * ({ms} ms + {ms} ms)"),
+)
+fires = st.builds("fire {} at {} for {}".format, coils, duties, times)
+clauses = st.sampled_from(["", " until 95 C", " ramp 5 ms", " overlap 5 ms", " overlap 1 ms until 80.5 C ramp 3 ms"])
+conditions = st.builds(
+    "{}{}.temperature {} {} C".format,
+    st.sampled_from(["any ", "all "]),
+    st.sampled_from(["front", "even", "all", "A"]),
+    st.sampled_from("<>"),
+    st.integers(20, 110),
+)
+others = st.sampled_from(["supply.current > 300 mA", "supply.voltage < 1.8 * 1000 mV", "board.temperature > 40 C"])
+waits = st.builds(
+    "wait until {} timeout {} else {}".format, conditions | others, times, st.sampled_from(["abort", "continue"])
+)
+static = st.one_of(st.builds("{}{}".format, fires, clauses), times.map("wait {}".format))
+
+
+def indented(lines):
+    return "\n".join("    " + line for line in "\n".join(lines).split("\n"))
+
+
+def blocks(inner):
+    bodies = st.lists(inner, min_size=1, max_size=3).map(indented)
+    return st.builds("repeat {}:\n{}".format, st.integers(1, 5), bodies)
+
+
+statements = st.recursive(st.one_of(static, waits), blocks, max_leaves=8)
+scripts = st.lists(statements, min_size=1, max_size=8).map(lambda lines: HEAD + "\n".join(lines) + "\n")
+pieces = st.sampled_from(
+    [*KEYWORDS, "\n", "\n    ", "\n  ", ":", " ", "A", "$c", "(", ")", ",", "60", "%", "ms", "C", "0.5", "[", "]", "..",
+     "=", "#", '"', "<", ">", ".", "temperature", "any", "all", "-", "*", "/", "\t", "\r\n", "é", "\x00", "\x01"]
+)  # fmt: skip
+
+
+@LIMITS
+@given(scripts)
+def test_a_random_valid_script_compiles_to_what_the_robot_accepts(text):
+    made = compile_script(loads(text), round_robot())
+
+    check_code(made.code, 8, 1 << 20)
+    assert read_header(made.program[:HEADER_BYTES]).length == len(made.code)
+
+
+@LIMITS
+@given(scripts)
+def test_the_worst_case_of_a_random_script_is_consistent(text):
+    made = check(compile_script(loads(text), round_robot()))
+
+    assert made.shortest_ms <= made.longest_ms
+    for coil in made.coils:
+        assert coil.on_ms <= made.longest_ms + 1
+        assert coil.energy_mj * 1000 <= 380 * coil.on_ms + 1000
+        assert coil.heat_peak_mj <= coil.energy_mj + 2
+    assert made.at_once <= sum(coil.orders > 0 for coil in made.coils)
+
+
+@LIMITS
+@given(st.text(max_size=300) | st.lists(pieces, max_size=60).map("".join))
+def test_random_text_is_read_or_refused_and_nothing_else(text):
+    for source in (text, HEAD + text):
+        refusal = refused(source)
+
+        assert refusal is None or all(item.message for item in refusal.diagnostics)
+
+
+@LIMITS
+@given(st.lists(pieces, max_size=60).map("".join))
+def test_a_mistake_always_lies_within_the_text(text):
+    file, found = parse_file(text, "x.gait")
+
+    for item in found:
+        assert 1 <= item.place.line <= len(file.lines)
+        assert 1 <= item.place.column <= len(file.line(item.place.line)) + 1
+
+
+@LIMITS
+@given(scripts, st.data())
+def test_a_script_with_a_hole_in_it_is_read_or_refused_and_nothing_else(text, data):
+    start = data.draw(st.integers(0, len(text)))
+    end = data.draw(st.integers(start, min(start + 20, len(text))))
+
+    refusal = refused(text[:start] + text[end:])
+
+    assert refusal is None or refusal.exit_code in (2, 4)
+
+
+def refused(text):
+    """Return the reasons why a script is refused, or None; anything else that it raises passes through."""
+    try:
+        check(compile_script(loads(text), round_robot()))
+    except GaitError as error:
+        return error
+    return None
