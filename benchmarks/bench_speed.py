@@ -1,0 +1,72 @@
+"""How much faster than real time the whole bench runs, and where its time goes.
+
+The crawl of the circular robot, script to ground, in this process: CPU seconds of the whole, and of the same run with
+the body's mechanics and heat, the chips and wires, and the firmware counted apart.
+
+    python benchmarks/bench_speed.py
+"""
+
+import cProfile
+import pstats
+import time
+from pathlib import Path
+
+from hil_sim.link import open_link
+from host.gait.compiler import compile_script
+from host.gait.script import load
+from host.robot import Robot
+from host.run import Keeper, run
+
+ROOT = Path(__file__).parent.parent
+SCRIPT = ROOT / "gaits" / "circular-crawl.gait"
+PLACES = (
+    ("physics", ("hil_sim/plant.py", "hil_sim/physics/", "hil_sim/supply.py")),
+    ("chips, wires and clock", ("hil_sim/",)),
+    ("firmware", ("firmware/",)),
+    ("protocol, both ends", ("protocol/",)),
+    ("host", ("host/",)),
+)
+
+
+def crawl(profile: cProfile.Profile | None = None) -> tuple[float, float]:
+    """Run the crawl; return virtual and CPU seconds of the run without its set-up."""
+    link = open_link("sim:circular")
+    with Robot(link, Keeper()) as robot:
+        robot.connect()
+        compiled = compile_script(load(str(SCRIPT)), robot.profile, ())
+        begun_s, cpu_s = link.now_s(), time.process_time()
+        if profile:
+            profile.enable()
+        run(robot, compiled.program, lambda stage, done: None)
+        if profile:
+            profile.disable()
+        return link.now_s() - begun_s, time.process_time() - cpu_s
+
+
+def shares(profile: cProfile.Profile) -> dict[str, float]:
+    """Return the share of each place in the profiled time; built-in functions count for nobody."""
+    spent = dict.fromkeys((name for name, _ in PLACES), 0.0)
+    rows = pstats.Stats(profile).stats.items()
+    for (file, _, _), (_, _, own_s, _, _) in rows:
+        inside = file.removeprefix(f"{ROOT}/")
+        place = next((name for name, heads in PLACES if inside.startswith(heads)), None)
+        if place:
+            spent[place] += own_s
+    total = sum(spent.values())
+    return {name: own_s / total for name, own_s in spent.items()}
+
+
+def main() -> None:
+    """Print the real-time factor (best of three) and the split of a profiled run."""
+    crawl()
+    runs = [crawl() for _ in range(3)]
+    best = max(virtual_s / cpu_s for virtual_s, cpu_s in runs)
+    print(f"circular crawl, {runs[0][0]:.1f} s of virtual time: {best:.0f} x real time on one core")
+    profile = cProfile.Profile()
+    crawl(profile)
+    for name, share in shares(profile).items():
+        print(f"  {name:24} {100 * share:4.0f} %")
+
+
+if __name__ == "__main__":
+    main()
