@@ -1,0 +1,33 @@
+"""The bench's commands: what they print and how they refuse."""
+
+import json
+
+import pytest
+from click.testing import CliRunner
+
+from hil_sim.command import robots, sim
+
+
+def test_robots_lists_the_address_of_each():
+    result = CliRunner().invoke(robots, ["--json"])
+
+    rows = [json.loads(line) for line in result.output.splitlines()]
+    assert [row["address"] for row in rows if row["robot"] == "circular"] == ["sim:circular"]
+    assert rows[0]["coils"] == list("ABCDEFGH")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "exit_code", "message"),
+    [
+        (["circlar"], 3, "no robot 'circlar'; did you mean circular?"),
+        (["circular?slop=1"], 2, "no option 'slop'"),
+        (["circular", "--slope", "61"], 3, "ground.slope_deg"),
+        (["circular", "--speed", "0"], 2, "--speed"),
+        (["./none.toml"], 3, "no such robot file"),
+    ],
+)
+def test_what_cannot_be_built_is_refused(arguments, exit_code, message):
+    result = CliRunner().invoke(sim, arguments)
+
+    assert result.exit_code == exit_code
+    assert message in result.output
