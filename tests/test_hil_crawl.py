@@ -101,3 +101,18 @@ def test_without_friction_it_slips():
     slipping = report(CRAWL, "?mu=0.001")["observed"]
 
     assert abs(slipping["travel_mm"]) < 0.5 * 8 * EIGHTH_MM
+
+
+def test_the_measured_current_is_the_duty_s_share_and_does_not_beat_with_the_pwm(rig):
+    """The monitor's conversions must fall on all phases of the PWM, or its mean wanders between 0 and full."""
+    rig.robot.arm()
+    rig.robot.subscribe(20)
+    rig.fire("A", duty_percent=32, hold_s=3)
+
+    told = rig.run(seconds=2)
+
+    currents_ma = [row.current_ma for row in told[25:] if hasattr(row, "current_ma")]
+    full_ma = 2000 / 9.8
+    assert len(currents_ma) > 50
+    assert min(currents_ma) > 0.28 * full_ma
+    assert max(currents_ma) < 0.36 * full_ma
