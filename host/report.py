@@ -16,6 +16,7 @@ from host.gait.compiler import Compiled
 from host.profile import Profile
 from host.recording import Recording
 from host.records import Event, Telemetry
+from host.robot import ENDS
 from host.run import Ending
 from protocol import codes
 
@@ -159,9 +160,8 @@ def _power_w(supply_mv: int, profile: Profile) -> float:
 
 
 def _duration_s(recording: Recording) -> float:
-    """Return the time between the start of the program and its end, on the robot's clock."""
+    """Return the time from the program's start to its end, or to the last that was heard, on the robot's clock."""
     started = [event.now_ms for event in recording.events if event.event == "started"]
-    ended = [
-        event.now_ms for event in recording.events if event.event in ("finished", "aborted", "tripped", "disarmed")
-    ]
-    return (ended[0] - started[0]) % (1 << 32) / 1000 if started and ended else 0.0
+    ended = [event.now_ms for event in recording.events if event.event in ENDS]
+    last = [record.now_ms for record in recording.telemetry[-1:]]
+    return ((ended or last)[0] - started[0]) % (1 << 32) / 1000 if started and (ended or last) else 0.0

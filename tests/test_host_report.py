@@ -112,6 +112,13 @@ def test_the_clock_of_the_robot_may_wrap_during_a_run(facts):
     assert report(done(), seen, facts)["duration_s"] == 1.0
 
 
+def test_a_run_that_was_cut_off_lasted_until_the_last_word(facts):
+    seen = recording()
+    del seen.events[1:], seen.telemetry[-1:]
+
+    assert report(Ending("link lost"), seen, facts)["duration_s"] == 0.6
+
+
 def test_a_profile_knows_labels_groups_and_masks(profile):
     assert profile.labels == tuple("ABCDEFGH")
     assert profile.mask(["A", "C"]) == 0b101

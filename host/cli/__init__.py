@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import signal
 import sys
-from collections.abc import Sequence
-from difflib import get_close_matches
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
 
@@ -34,6 +34,7 @@ COMMANDS = {
     "figure": "Draw a figure of the paper from the bench.",
 }
 INTERRUPTED = 130
+ENDS = [number for number in signal.Signals if number.name in ("SIGTERM", "SIGHUP")]
 
 
 class Softrig(click.Group):
@@ -73,9 +74,9 @@ class Softrig(click.Group):
         if not standalone_mode:
             return super().main(args, prog_name, complete_var, standalone_mode=False, **extra)
         state: dict[str, Any] = {}
-        _listen_for_ends()
         try:
-            status = super().main(args, prog_name, complete_var, standalone_mode=False, obj=state, **extra)
+            with _every_end_heard():
+                status = super().main(args, prog_name, complete_var, standalone_mode=False, obj=state, **extra)
         except (Exception, KeyboardInterrupt) as error:
             status = _told(error, bool(state.get("json")))
         sys.exit(status if isinstance(status, int) else 0)
@@ -116,15 +117,23 @@ def _told(error: BaseException, as_json: bool) -> int:
     return error.exit_code
 
 
-def _listen_for_ends() -> None:
+@contextmanager
+def _every_end_heard() -> Iterator[None]:
     """Let every polite way of ending a program send stop first, also in the background of a shell."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    for name in ("SIGTERM", "SIGHUP"):
-        number = getattr(signal, name, None)
-        if number is not None and signal.getsignal(number) is signal.SIG_DFL:
-            signal.signal(number, lambda *_: signal.raise_signal(signal.SIGINT))
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, *ENDS)}
+    try:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        for number in ENDS:
+            if before[number] is signal.SIG_DFL:
+                signal.signal(number, lambda *_: signal.raise_signal(signal.SIGINT))
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler or signal.SIG_DFL)
 
 
 def _nearest(word: str, known: list[str]) -> str:
+    from difflib import get_close_matches  # noqa: PLC0415
+
     near = get_close_matches(word, known, n=1)
     return f"; did you mean {near[0]!r}?" if near else "; `softrig --help` lists them"
