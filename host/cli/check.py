@@ -7,9 +7,7 @@ import click
 from host.cli.connection import connected
 from host.cli.options import json_option, robot_option
 from host.cli.output import emit
-from host.gait.checker import check
-from host.gait.compiler import compile_script
-from host.gait.diagnostics import GaitError
+from host.cli.scripts import proven
 from host.gait.script import load
 
 
@@ -25,7 +23,5 @@ def command(script: str, robot: str | None, params: tuple[str, ...], as_json: bo
     """
     tree = load(script)
     with connected(robot or f"sim:{tree.robot_name()}", watch_only=True) as face:
-        report = check(compile_script(tree, face.profile, params))
-    if not report.sound:
-        raise GaitError(report.diagnostics)
+        _, report = proven(tree, face.profile, params)
     emit(as_json, report.as_dict(), report.lines())

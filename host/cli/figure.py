@@ -9,8 +9,8 @@ import click
 import host
 from host.cli.options import robot_option
 from host.cli.output import note
+from host.cli.scripts import proven
 from host.errors import BadRequest
-from host.gait.compiler import compile_script
 from host.gait.script import load
 from host.link import open_link
 from host.robot import Robot
@@ -36,7 +36,8 @@ def command(number: str, output: Path, robot: str | None) -> None:
     with Robot(link, keeper) as face:
         face.connect()
         keeper.name_coils(face.profile.labels)
-        ending = run(face, compile_script(tree, face.profile).program, lambda stage, done: None)
+        compiled, _ = proven(tree, face.profile)
+        ending = run(face, compiled.program, lambda stage, done: None)
     error = ending.error()
     if error:
         raise error

@@ -11,15 +11,14 @@ import click
 from host.cli.options import json_option, robot_option
 from host.cli.output import emit, json_line, note
 from host.cli.progress import shown
-from host.gait.checker import check
-from host.gait.compiler import Compiled, compile_script
-from host.gait.diagnostics import GaitError
+from host.cli.scripts import proven
+from host.gait.compiler import Compiled
 from host.gait.script import load
 from host.link import open_link, wall_s
 from host.log import LogWriter
 from host.report import Facts, Took, lines, report
 from host.robot import Robot
-from host.run import Ending, Keeper, run, upload
+from host.run import Ending, Keeper, Progress, run, upload
 from host.view import check_pictures, draw_run
 
 
@@ -55,9 +54,10 @@ def command(
             face.connect()
             keeper.name_coils(face.profile.labels)
             keeper.recording.title = f"{Path(script).name} on {address}"
-            compiled = compile_script(tree, face.profile, params)
+            compiled, worst = proven(tree, face.profile, params)
             _attach(log, compiled, face, address)
-            ending, took = _run(face, compiled, dry_run, as_json)
+            with shown(len(compiled.code), worst.longest_ms / 1000, quiet=as_json) as progress:
+                ending, took = _run(face, compiled.program, dry_run, progress)
             facts = Facts(compiled, address, face.info(), face.statistics(), link.observer, took)
             fields = report(ending, keeper.recording, facts)
         if log:
@@ -71,18 +71,14 @@ def command(
         raise error
 
 
-def _run(face: Robot, compiled: Compiled, dry_run: bool, as_json: bool) -> tuple[Ending | None, Took]:
-    """Hold the script against the robot's limits, then run it; return how it ended and how long it took."""
-    verdict = check(compiled)
-    if not verdict.sound:
-        raise GaitError(verdict.diagnostics)
+def _run(face: Robot, code: bytes, dry_run: bool, progress: Progress) -> tuple[Ending | None, Took]:
+    """Run the program, or only upload it; return how it ended and how long it took."""
     begun = wall_s(), face.link.now_s()
     ending = None
-    with shown(len(compiled.code), verdict.longest_ms / 1000, quiet=as_json) as progress:
-        if dry_run:
-            upload(face, compiled.program, progress)
-        else:
-            ending = run(face, compiled.program, progress)
+    if dry_run:
+        upload(face, code, progress)
+    else:
+        ending = run(face, code, progress)
     return ending, Took(wall_s() - begun[0], face.link.now_s() - begun[1])
 
 

@@ -1,0 +1,20 @@
+"""A script held against the limits of a connected robot, as `check`, `run` and `figure` need it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from host.gait.checker import Report, check
+from host.gait.compiler import Compiled, compile_script
+from host.gait.diagnostics import GaitError
+from host.gait.script import Script
+from host.profile import Profile
+
+
+def proven(script: Script, profile: Profile, overrides: Sequence[str] = ()) -> tuple[Compiled, Report]:
+    """Return the program and its worst case; GaitError lists what is wrong, or every limit it would break."""
+    compiled = compile_script(script, profile, overrides)
+    report = check(compiled)
+    if not report.sound:
+        raise GaitError(report.diagnostics)
+    return compiled, report
