@@ -1,7 +1,7 @@
 """Plays a plan in its worst case: every wait for a condition over at once, so that no coil has time to cool.
 
 The arithmetic is the firmware's, rounded against the script: power from the nominal supply, the heat budget as energy
-that leaks with its own time constant, orders that begin and end on the control step. Cut-offs are taken as never
+that leaks with its own time constant, orders that end on the control step after their time. Cut-offs are taken as never
 reached. Loops are played until their turns repeat themselves, so that ten thousand turns cost no more than a few.
 """
 
@@ -38,7 +38,9 @@ class CoilTrial:
     heat_uj: int = 0
     heat_at_ms: int = 0
     since_ms: int = 0
-    end_ms: int = -(10**9)
+    begin_ms: int = 0
+    end_ms: int = -(10**9)  # as the script says
+    off_ms: int = 0  # when the control step notices it, at the latest
     power_uw: int = 0
     duty_permille: int = 0
     waits: int = 0
@@ -63,7 +65,7 @@ class Trial:
     def play(self, plan: Iterable[Op]) -> None:
         """Play all of it, and let every coil end."""
         self._run(plan)
-        self.tail_ms = max(0, *(coil.end_ms - self.now_ms for coil in self.coils))
+        self.tail_ms = max(0, *(coil.off_ms - self.now_ms for coil in self.coils))
         self.now_ms += self.tail_ms
         for channel in range(len(self.coils)):
             self._settle(channel)
@@ -100,12 +102,13 @@ class Trial:
         rows = []
         for channel, coil in enumerate(self.coils):
             self._settle(channel)
-            left_ms = max(coil.end_ms - self.now_ms, -STEP_MS)
+            left_ms, off_ms = max(coil.end_ms - self.now_ms, -STEP_MS), max(coil.off_ms - self.now_ms, 0)
             on = left_ms > -STEP_MS
             since_ms = max(coil.since_ms - self.now_ms, -self._limits.on_max_ms - 1) if on else 0
-            duty = coil.duty_permille if left_ms > 0 else 0
-            waited = left_ms > 0 and coil.waits != self._waits
-            rows.append((left_ms, since_ms, duty, coil.heat_uj, max(self._rested_ms(coil) - self.now_ms, 0), waited))
+            duty = coil.duty_permille if off_ms else 0
+            waited = off_ms > 0 and coil.waits != self._waits
+            rest_ms = max(self._rested_ms(coil) - self.now_ms, 0)
+            rows.append((left_ms, off_ms, since_ms, duty, coil.heat_uj, rest_ms, waited))
         return tuple(rows)
 
     def _skip(self, turns: int, turn_ms: int, sums: list[tuple[int, int, int]]) -> None:
@@ -115,7 +118,9 @@ class Trial:
             coil.energy_uj += turns * (coil.energy_uj - energy_uj)
             coil.orders += turns * (coil.orders - orders)
             coil.end_ms += turns * turn_ms
+            coil.off_ms += turns * turn_ms
             coil.since_ms += turns * turn_ms
+            coil.begin_ms += turns * turn_ms
             coil.heat_at_ms += turns * turn_ms
         self.now_ms += turns * turn_ms
 
@@ -137,18 +142,20 @@ class Trial:
     def _order(self, channel: int, op: Fire) -> None:
         """Begin a new order on one coil, in place of the one it may have."""
         coil, label = self.coils[channel], self._profile.labels[channel]
-        if coil.end_ms > self.now_ms:
+        if coil.off_ms > self.now_ms:
             self._replace(coil)
         if coil.end_ms + STEP_MS <= self.now_ms:
             left_ms = self._rested_ms(coil) - self.now_ms
             if left_ms > 0:
                 self._complain(op, "E312", f"coil {label} must rest for {left_ms} ms more before it is fired again")
             coil.since_ms = self.now_ms
-        coil.end_ms, coil.order, coil.waits = self.now_ms + op.time_ms, op, self._waits
+        time_ms = op.time_ms + -op.time_ms % STEP_MS
+        coil.begin_ms, coil.end_ms, coil.off_ms = self.now_ms, self.now_ms + op.time_ms, self.now_ms + time_ms
+        coil.order, coil.waits = op, self._waits
         coil.duty_permille, coil.power_uw = op.duty_permille, self.full_uw * op.duty_permille // 1000
         coil.orders += 1
-        coil.on_ms += op.time_ms
-        coil.energy_uj += _energy_uj(coil.power_uw, op.time_ms)
+        coil.on_ms += time_ms
+        coil.energy_uj += _energy_uj(coil.power_uw, time_ms)
         on_ms, most_ms = coil.end_ms - coil.since_ms, self._limits.on_max_ms
         if on_ms > most_ms:
             message = f"coil {label} would be on for {on_ms} ms without a pause, at most {most_ms} ms"
@@ -156,12 +163,12 @@ class Trial:
 
     def _replace(self, coil: CoilTrial) -> None:
         """Take back what the old order has not had; if a wait came between, it may have had all of it."""
-        left_ms = coil.end_ms - self.now_ms
-        if coil.waits == self._waits:
-            coil.on_ms -= left_ms
-            coil.energy_uj -= _energy_uj(coil.power_uw, left_ms)
-        else:
-            coil.heat_uj += _energy_uj(coil.power_uw, left_ms)
+        left_ms = had_ms = coil.off_ms - self.now_ms
+        if coil.end_ms > self.now_ms and coil.waits == self._waits:
+            had_ms = (coil.begin_ms - self.now_ms) % STEP_MS
+        coil.heat_uj += _energy_uj(coil.power_uw, had_ms)
+        coil.on_ms -= left_ms - had_ms
+        coil.energy_uj -= _energy_uj(coil.power_uw, left_ms - had_ms)
 
     def _rested_ms(self, coil: CoilTrial) -> int:
         """Return until when a coil must rest after its last time on."""
@@ -172,7 +179,7 @@ class Trial:
     def _settle(self, channel: int) -> None:
         """Bring the heat of one coil up to now."""
         coil = self.coils[channel]
-        on_ms = min(max(coil.end_ms - coil.heat_at_ms, 0), self.now_ms - coil.heat_at_ms)
+        on_ms = min(max(coil.off_ms - coil.heat_at_ms, 0), self.now_ms - coil.heat_at_ms)
         if on_ms:
             coil.heat_uj = self._heat_uj(coil.heat_uj, coil.power_uw, on_ms)
             coil.heat_peak_uj = max(coil.heat_peak_uj, coil.heat_uj)

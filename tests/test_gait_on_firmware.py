@@ -1,0 +1,109 @@
+"""What the checker passes, the robot runs: the same programs on the firmware's own sequencer, channels and estimate."""
+
+import json
+
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from firmware.channels import Channels
+from firmware.player import FINISHED, RUNNING, TIMED_OUT, Player
+from firmware.profile import Profile
+from firmware.sense import Sense
+from host.gait.checker import check
+from tests.firmware_bench import Chip, Table
+from tests.gait_scripts import ROUND, compiled, report
+
+STEP_MS = 5
+LAG_MS = 35  # the firmware looks at idle coils in turn: its estimate may take a coil as on since its last turn
+FULL_UW = 380_000
+
+coils = st.lists(st.sampled_from("ABCD"), min_size=1, max_size=3, unique=True).map(" ".join)
+fires = st.builds(
+    "fire {} at {} % for {} ms{}".format,
+    coils,
+    st.integers(1, 70),
+    st.integers(20, 2000),
+    st.sampled_from(["", "", " overlap 20 ms", " overlap 13 ms", " until 80 C", " ramp 17 ms"]),
+)
+waits = st.one_of(
+    st.integers(1, 3000).map("wait {} ms".format),
+    st.builds("wait until {}.temperature > {} C timeout {} ms else continue".format,
+              st.sampled_from(["A", "any", "all"]), st.integers(30, 90), st.integers(1, 500)),
+)  # fmt: skip
+
+
+def blocks(inner):
+    bodies = st.lists(inner, min_size=1, max_size=3).map(lambda lines: "\n".join(lines).replace("\n", "\n    "))
+    return st.builds("repeat {}:\n    {}\n    wait 1 ms".format, st.integers(1, 4), bodies)
+
+
+bodies = st.lists(st.recursive(fires | waits, blocks, max_leaves=5), min_size=1, max_size=5).map("\n".join)
+
+
+class Bare:
+    """The firmware's sequencer, channels and estimate on a table top, without link or guard."""
+
+    def __init__(self, code: bytes) -> None:
+        profile, board = Profile(json.dumps(ROUND).encode()), Table()
+        outputs = [(Chip(), output) for output in range(8)]
+        self.channels = Channels(outputs, profile.coil, profile.supply.at_once_max)
+        self.sense = Sense(board, board.supply, 8, profile)
+        self.player = Player(self.channels, self.sense)
+        self.on_ms, self.heat_uj, self.at_once, self.too_long = [0] * 8, [0] * 8, 0, -1
+        self.sense.begin(0)
+        self.player.load(code, 0)
+        self.now_ms = 0
+
+    def run(self) -> int:
+        """Run to the end and return the outcome; Refused passes through."""
+        outcome = RUNNING
+        while outcome == RUNNING:
+            self.sense.read()
+            outcome = self.player.run(self.now_ms)
+            self.too_long = max(self.too_long, self.channels.update(self.now_ms, self.sense.temperature_millidegc))
+            self.sense.update(self.now_ms, self.channels.on_mask, self.channels.duty_permille)
+            self._measure()
+            self.now_ms += STEP_MS
+        return outcome
+
+    def _measure(self) -> None:
+        on = [channel for channel in range(8) if self.channels.on_mask >> channel & 1]
+        self.at_once = max(self.at_once, len(on))
+        for channel in on:
+            self.on_ms[channel] += STEP_MS
+            self.heat_uj[channel] = max(self.heat_uj[channel], self.sense.heat_uj[channel])
+
+
+def test_a_script_runs_for_as_long_as_its_text_says():
+    made = compiled("fire A at 50 % for 1 s\nrepeat 3:\n    fire B at 50 % for 200 ms overlap 50 ms\nwait 500 ms")
+    bare = Bare(made.code)
+
+    assert bare.run() == FINISHED
+    assert bare.now_ms - STEP_MS == check(made).shortest_ms == 1950
+    assert bare.on_ms[:2] == [1000, 500]
+
+
+def test_a_wait_that_runs_out_ends_within_its_longest_time():
+    made = compiled("wait until A.temperature > 60 C timeout 703 ms else abort")
+    bare = Bare(made.code)
+
+    assert bare.run() == TIMED_OUT
+    assert bare.now_ms - STEP_MS <= check(made).longest_ms
+
+
+@settings(max_examples=60, deadline=None)
+@given(bodies)
+def test_what_the_checker_passes_is_never_refused_and_never_beyond_its_worst_case(body):
+    worst = report(body)
+    assume(worst.sound and worst.longest_ms < 60_000)
+    bare = Bare(compiled(body).code)
+
+    assert bare.run() == FINISHED
+
+    assert bare.too_long == -1
+    assert bare.now_ms - STEP_MS <= worst.longest_ms
+    assert bare.at_once <= worst.at_once
+    for channel, coil in enumerate(worst.coils):
+        lag_uj = coil.orders * LAG_MS * FULL_UW // 1000
+        assert bare.on_ms[channel] <= coil.on_ms
+        assert bare.heat_uj[channel] <= coil.heat_peak_mj * 1000 + lag_uj
