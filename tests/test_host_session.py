@@ -85,6 +85,13 @@ def test_a_robot_of_another_protocol_version_is_refused(peer, line):
         connected(line)
 
 
+def test_a_robot_that_answers_in_another_version_is_refused(peer, line):
+    peer._post = lambda message, **values: FakeRobot._post(peer, message, **{**values, "version": 0})
+
+    with pytest.raises(Mismatch, match="update the robot's firmware"):
+        connected(line)
+
+
 def test_a_profile_that_lacks_a_limit_is_a_mismatch():
     robot = Robot(FakeLine(FakeRobot(profile=PROFILE.replace(b"trip_degc", b"trip_degf"))))
 
@@ -209,6 +216,15 @@ def test_telemetry_is_decoded_with_both_clocks(line):
     assert 0 <= record.host_ms - record.now_ms <= 5
 
 
+def test_the_clocks_are_compared_by_the_frame_that_was_quickest(peer, line):
+    robot = connected(line)
+    for late_ms in (40, 0, 25):
+        peer.tell(messages.STEP, 0, 255, 0, line.now_ms + 7000 - late_ms)
+        list(robot.listen(50))
+
+    assert robot._session.robot_ms(0) == pytest.approx(7000, abs=5)
+
+
 def test_a_lost_telemetry_record_is_counted(peer):
     robot = connected(FakeLine(peer, loss=0.1, seed=3))
     robot.subscribe(10)
@@ -225,6 +241,7 @@ def test_a_second_host_may_watch_but_gives_no_orders_and_renews_no_lease(peer, l
 
     with pytest.raises(Refused, match="R06"):
         robot.arm()
+    peer.tell(messages.STEP, 0, 255, 0, line.now_ms)
     list(robot.listen(1000))
 
     assert len(line.written) == before
