@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from fractions import Fraction
 from math import ceil
 
 from host.gait.diagnostics import Problems
@@ -56,8 +57,10 @@ class Trial:
         self.tail_ms = 0  # how long coils are on after the last op
         self.at_once_peak = 0
         self.current_peak_ma = 0
-        self.full_ma = profile.supply_mv * 1000 // (profile.coil.resistance_mohm + profile.coil.wiring_mohm)
-        self.full_uw = self.full_ma * self.full_ma // 100 * profile.coil.resistance_mohm // 10
+        supply_mv, coil_mohm = profile.supply_mv, profile.coil.resistance_mohm
+        loop_mohm = coil_mohm + profile.coil.wiring_mohm
+        self.full_ma = ceil(Fraction(1000 * supply_mv, loop_mohm))
+        self.full_uw = ceil(Fraction(1000 * supply_mv * supply_mv * coil_mohm, loop_mohm * loop_mohm))
         self._profile, self._limits, self._problems = profile, profile.coil, problems
         self._waits = 0
         self._left = EVENTS_MAX
@@ -130,7 +133,7 @@ class Trial:
                 self._settle(channel)
                 self._order(channel, op)
         on = [coil for coil in self.coils if coil.end_ms > self.now_ms]
-        current_ma = sum(self.full_ma * coil.duty_permille // 1000 for coil in on)
+        current_ma = sum(-(-self.full_ma * coil.duty_permille // 1000) for coil in on)
         self.at_once_peak = max(self.at_once_peak, len(on))
         self.current_peak_ma = max(self.current_peak_ma, current_ma)
         supply = self._profile.supply
@@ -152,7 +155,7 @@ class Trial:
         time_ms = op.time_ms + -op.time_ms % STEP_MS
         coil.begin_ms, coil.end_ms, coil.off_ms = self.now_ms, self.now_ms + op.time_ms, self.now_ms + time_ms
         coil.order, coil.waits = op, self._waits
-        coil.duty_permille, coil.power_uw = op.duty_permille, self.full_uw * op.duty_permille // 1000
+        coil.duty_permille, coil.power_uw = op.duty_permille, -(-self.full_uw * op.duty_permille // 1000)
         coil.orders += 1
         coil.on_ms += time_ms
         coil.energy_uj += _energy_uj(coil.power_uw, time_ms)
@@ -208,4 +211,4 @@ class Trial:
 
 
 def _energy_uj(power_uw: int, time_ms: int) -> int:
-    return power_uw * time_ms // 1000
+    return -(-power_uw * time_ms // 1000)
