@@ -70,7 +70,7 @@ def test_the_worst_case_of_a_random_script_is_consistent(text):
 
     assert made.shortest_ms <= made.longest_ms
     for coil in made.coils:
-        assert coil.on_ms <= made.longest_ms + 1
+        assert coil.on_ms <= made.longest_ms + 4 * coil.orders  # each order ends on a control step
         assert coil.energy_mj * 1000 <= 380 * coil.on_ms + 1000
         assert coil.heat_peak_mj <= coil.energy_mj + 2
     assert made.at_once <= sum(coil.orders > 0 for coil in made.coils)

@@ -11,10 +11,10 @@ from dataclasses import dataclass, field, replace
 from host.gait import orders, tree, units
 from host.gait.declare import check_head, declare_defs, declare_params
 from host.gait.diagnostics import Problems, did_you_mean
+from host.gait.lines import code_part
 from host.gait.plan import Loop, Op, Step, Wait
 from host.gait.scope import CoilSet, Scope, Value
 from host.gait.script import Script
-from host.gait.syntax import code_part
 from host.gait.timeline import TooLarge, duration_ms, together
 from host.gait.tree import Place, Statement
 from host.profile import Profile

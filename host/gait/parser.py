@@ -19,11 +19,10 @@ from lark.indenter import Indenter
 from host.gait import syntax, tree
 from host.gait.build import Builder
 from host.gait.diagnostics import Diagnostic, GaitError
+from host.gait.lines import COMMENT, holds_statement, indent, next_indent, unreadable
 from host.gait.syntax import BROKEN, BadIndent
 from host.gait.tree import Comment, Expression, File, Place
 
-LINES_MAX = 20_000
-LINE_MAX = 1_000
 DEPTH_MAX = 30
 REPORTS_MAX = 20
 
@@ -63,7 +62,7 @@ def grammar() -> Lark:
 def parse_file(text: str, name: str) -> tuple[File, list[Diagnostic]]:
     """Return the tree of one file, unread lines as Broken, and what is wrong with their form."""
     lines = text.replace("\r\n", "\n").split("\n")
-    found = syntax.unreadable(lines, name, LINES_MAX, LINE_MAX)
+    found = unreadable(lines, name)
     if found:
         return File(name, (), (), tuple(lines), readable=False), found
     readable = list(lines)
@@ -83,7 +82,7 @@ def parse_file(text: str, name: str) -> tuple[File, list[Diagnostic]]:
 
 def parse_value(text: str, name: str) -> Expression:
     """Return the expression that `text` is, or raise GaitError; places are in a file called `name`."""
-    found = syntax.unreadable([text], name, 1, LINE_MAX)
+    found = unreadable([text], name)
     if found:
         raise GaitError(found)
     try:
@@ -97,28 +96,28 @@ def _set_aside(lines: list[str], diagnostic: Diagnostic) -> bool:
     at = diagnostic.place.line - 1
     if not 0 <= at < len(lines) or BROKEN in lines[at]:
         return False
-    opens = syntax.next_indent(lines, at) > syntax.indent(lines[at])
+    opens = next_indent(lines, at) > indent(lines[at])
     if diagnostic.code == "E105" and (opens or not lines[at].rstrip().endswith(":")):
         _shift_left(lines, at)
     else:
-        lines[at] = " " * syntax.indent(lines[at]) + BROKEN + (":" if opens else "")
+        lines[at] = " " * indent(lines[at]) + BROKEN + (":" if opens else "")
     return True
 
 
 def _shift_left(lines: list[str], at: int) -> None:
     """Move a block that is indented for no reason back to the column of the statement above it."""
-    above = next((line for line in reversed(lines[:at]) if syntax.holds_statement(line)), "")
-    deep = syntax.indent(lines[at])
-    excess = deep - syntax.indent(above)
+    above = next((line for line in reversed(lines[:at]) if holds_statement(line)), "")
+    deep = indent(lines[at])
+    excess = deep - indent(above)
     for number in range(at, len(lines)):
-        if syntax.holds_statement(lines[number]) and syntax.indent(lines[number]) < deep:
+        if holds_statement(lines[number]) and indent(lines[number]) < deep:
             break
-        lines[number] = lines[number][min(excess, syntax.indent(lines[number])) :]
+        lines[number] = lines[number][min(excess, indent(lines[number])) :]
 
 
 def _comments(lines: list[str], name: str) -> Iterator[Comment]:
     for number, line in enumerate(lines, 1):
-        match = syntax.COMMENT.match(line)
+        match = COMMENT.match(line)
         if match:
             column = match.start(1) + 1
             yield Comment(match[1], Place(name, number, column, len(line) + 1))

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import re
-
 from lark import Token
 from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
 from host.gait.diagnostics import Diagnostic, did_you_mean
+from host.gait.lines import code_part, holds_statement, indent
 from host.gait.tree import Place
 
-COMMENT = re.compile(r'(?:[^"#]|"[^"]*")*(#.*)')
 BROKEN = "\x01"  # stands for a line that was reported and set aside
 FORMS = {
     "gait": "gait 1",
@@ -24,7 +22,6 @@ FORMS = {
     "wait": "wait 500 ms, or wait until A.temperature > 95 C timeout 4 s else continue",
     "guard": "guard any.temperature > 110 C",
 }
-OPERATORS_MAX = 60
 BLOCKS = ("def", "repeat", "together")
 CLAUSES = ("at", "for", "until", "overlap", "ramp", "timeout", "else")
 KEYWORDS = (*FORMS, *CLAUSES)
@@ -43,53 +40,6 @@ class BadIndent(Exception):
         self.line = line
         self.indent = indent
         self.deep = deep
-
-
-def code_part(line: str) -> str:
-    """Return `line` without its comment and the blanks before it."""
-    match = COMMENT.match(line)
-    return (line[: match.start(1)] if match else line).rstrip()
-
-
-def indent(line: str) -> int:
-    """Return the number of spaces that `line` begins with."""
-    return len(line) - len(line.lstrip(" "))
-
-
-def holds_statement(line: str) -> bool:
-    """Return whether there is more on a line than blanks and a comment."""
-    return bool(line.strip()) and not line.lstrip().startswith("#")
-
-
-def next_indent(lines: list[str], at: int) -> int:
-    """Return the indentation of the next line that holds a statement, or 0."""
-    for line in lines[at + 1 :]:
-        if holds_statement(line):
-            return indent(line)
-    return 0
-
-
-def unreadable(lines: list[str], name: str, lines_max: int, line_max: int) -> list[Diagnostic]:
-    """Return what keeps a text from being read at all: its size, tabs, control characters."""
-    if len(lines) > lines_max:
-        return [Diagnostic(Place(name, lines_max + 1, 1, 2), "E114", f"{len(lines)} lines, at most {lines_max}")]
-    found = []
-    for number, line in enumerate(lines, 1):
-        lead = len(line) - len(line.lstrip())
-        strange = next((at for at, sign in enumerate(line) if ord(sign) < 32 and sign != "\t"), None)
-        if len(line) > line_max:
-            found.append(_at(name, number, 1, "E114", f"a line of {len(line)} characters, at most {line_max}", ""))
-        elif strange is not None:
-            found.append(_at(name, number, strange + 1, "E108", "a control character has no meaning here", ""))
-        elif sum(map(code_part(line).count, "+-*/(")) > OPERATORS_MAX:
-            found.append(_at(name, number, 1, "E114", f"more than {OPERATORS_MAX} operators in one line", ""))
-        elif "\t" in line[:lead] and line.strip():
-            found.append(_at(name, number, line.index("\t") + 1, "E106", "a tab in the indentation", line))
-    first = next((number for number, line in enumerate(lines, 1) if line.strip() and line.lstrip()[0] != "#"), 0)
-    if not found and first and indent(lines[first - 1]):
-        line = lines[first - 1]
-        found.append(_at(name, first, indent(line) + 1, "E105", "the first statement is indented", line))
-    return found
 
 
 def say(error: UnexpectedInput | BadIndent, lines: list[str], name: str) -> Diagnostic:
@@ -151,7 +101,7 @@ class _Reader:
         if word in KEYWORDS and word not in FORMS:
             help = "this word belongs to a statement: put it on the line of its `fire` or `wait`"
             return self._word("E107", f"`{word}` does not begin a statement", help)
-        if word.isidentifier() and word not in FORMS and "LPAR" in self.accepts:
+        if word.isidentifier() and word not in FORMS and self.accepts == {"LPAR"}:
             near = did_you_mean(word, FORMS)
             return self._word("E107", f"`{word}` is no statement", near or f"statements are: {', '.join(FORMS)}")
         return None
