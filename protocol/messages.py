@@ -20,6 +20,8 @@ _RANGES = {
     "i": (-0x80000000, 0x7FFFFFFF),
 }
 
+_OutOfRange = getattr(struct, "error", ValueError)  # MicroPython has no struct.error
+
 STATES = ("boot", "idle", "armed", "running", "tripped")
 BOOT, IDLE, ARMED, RUNNING, TRIPPED = 0, 1, 2, 3, 4
 
@@ -47,7 +49,9 @@ class Message:
         self.help = help
         self.fields = fields
         self._open = bool(fields) and fields[-1].letter == "s"
-        self._format = "<" + "".join([field.letter for field in fields if field.letter != "s"])
+        sized = fields[:-1] if self._open else fields
+        self._names = [field.name for field in sized]
+        self._format = "<" + "".join([field.letter for field in sized])
         self._size = struct.calcsize(self._format)
         self._tuple = namedtuple(name, tuple([field.name for field in fields]))
 
@@ -55,9 +59,18 @@ class Message:
         """Return the payload; ValueError names a field that is missing, unknown or outside its range."""
         if len(values) != len(self.fields):
             raise ValueError(f"{self.name} takes {', '.join([field.name for field in self.fields])}")
-        numbers = [self._checked(field, values) for field in self.fields]
-        rest = numbers.pop() if self._open else b""
-        return struct.pack(self._format, *numbers) + rest
+        try:
+            numbers = tuple([values[name] for name in self._names])
+            rest = bytes(values[self.fields[-1].name]) if self._open else b""
+        except KeyError as missing:
+            raise ValueError(f"{self.name} needs {missing.args[0]}") from None
+        try:
+            packed = struct.pack(self._format, *numbers)
+        except _OutOfRange:
+            raise ValueError(self._complaint(values)) from None
+        if struct.unpack(self._format, packed) != numbers:  # MicroPython wraps instead of raising
+            raise ValueError(self._complaint(values))
+        return packed + rest
 
     def unpack(self, payload: bytes):
         """Return the fields as a named tuple; ValueError when the length is not this message's."""
@@ -70,16 +83,13 @@ class Message:
         """Return this row as the dictionary prints it: `20 fire coils:I duty_permille:H hold_ms:H`."""
         return " ".join([str(self.number), self.name] + [f"{field.name}:{field.letter}" for field in self.fields])
 
-    def _checked(self, field: Field, values: dict):
-        if field.name not in values:
-            raise ValueError(f"{self.name} needs {field.name}")
-        value = values[field.name]
-        if field.letter == "s":
-            return bytes(value)
-        low, high = _RANGES[field.letter]
-        if not low <= value <= high:
-            raise ValueError(f"{self.name}: {field.name} {value}, must be {low} to {high}")
-        return value
+    def _complaint(self, values: dict) -> str:
+        for field in self.fields:
+            low, high = _RANGES.get(field.letter, (0, 0))
+            value = values[field.name]
+            if field.letter != "s" and not low <= value <= high:
+                return f"{self.name}: {field.name} {value}, must be {low} to {high}"
+        return f"{self.name}: a field is not a whole number"
 
 
 HELLO = Message(
