@@ -151,19 +151,12 @@ class Tcp:
         return [self._listener.fileno(), *([self._host.fileno()] if self._host is not None else [])]
 
     def read(self) -> bytes:
-        """Take in a new host, or return what the present one has sent."""
-        self._accept()
-        if self._host is None:
-            return b""
-        try:
-            data = self._host.recv(CHUNK)
-        except BlockingIOError:
-            return b""
-        except OSError:
-            data = b""
-        if not data:
+        """Return what the present host has sent, and take in a new one when it has hung up."""
+        data = self._receive(CHUNK)
+        if data == b"" or (data and self._receive(1, socket.MSG_PEEK) == b""):
             self._leave()
-        return data
+        self._accept()
+        return data or b""
 
     def write(self, data: bytes) -> None:
         """Send to the host if there is one."""
@@ -180,6 +173,17 @@ class Tcp:
         """Stop listening and hang up."""
         self._leave()
         self._listener.close()
+
+    def _receive(self, count: int, flags: int = 0) -> bytes | None:
+        """Return what there is, b"" when the host has hung up, None when there is nothing."""
+        if self._host is None:
+            return None
+        try:
+            return self._host.recv(count, flags)
+        except BlockingIOError:
+            return None
+        except OSError:
+            return b""
 
     def _accept(self) -> None:
         try:
