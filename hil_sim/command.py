@@ -101,7 +101,8 @@ def _override(address: Address, seed: int | None, slope: float | None) -> None:
 
 
 def _serve(bench: Bench, name: str, link: Path | None, tcp: int | None, speed: float, as_json: bool) -> None:
-    from hil_sim.ports import Announcement, Pace, Port, Pty, Tcp, serve  # noqa: PLC0415
+    from hil_sim.announcement import Announcement  # noqa: PLC0415
+    from hil_sim.ports import Pace, Port, Pty, Tcp, serve  # noqa: PLC0415
 
     with ExitStack() as stack:
         pty = stack.enter_context(Pty(link))

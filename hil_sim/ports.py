@@ -7,18 +7,16 @@ the virtual line makes them. When this process is held up, virtual time waits wi
         serve(bench, [pty], Pace(speed=1.0), ended)
 """
 
-import json
 import os
 import select
 import socket
-import tempfile
 import termios
 import time
 import tty
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Protocol, Self
+from typing import Protocol, Self
 
 from hil_sim.bench import Bench
 
@@ -207,41 +205,6 @@ class Tcp:
 
     def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self.close()
-
-
-class Announcement:
-    """A small JSON file by which other programs of this user find a running bench; gone when it ends."""
-
-    def __init__(self, fields: Mapping[str, Any]) -> None:
-        folder = announcements()
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        for old in folder.glob("*.json"):
-            if not _lives(old.stem):
-                old.unlink(missing_ok=True)
-        self._file = folder / f"{os.getpid()}.json"
-        self._file.write_text(json.dumps({"pid": os.getpid(), **fields}) + "\n")
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
-        self._file.unlink(missing_ok=True)
-
-
-def announcements() -> Path:
-    """Return the folder of this user's announcements, PID.json each."""
-    runtime = os.environ.get("XDG_RUNTIME_DIR")
-    return Path(runtime) / "softrig" if runtime else Path(tempfile.gettempdir()) / f"softrig-{os.getuid()}"
-
-
-def _lives(pid: str) -> bool:
-    try:
-        os.kill(int(pid), 0)
-    except (ProcessLookupError, ValueError):
-        return False
-    except PermissionError:
-        pass
-    return True
 
 
 def _check_link(link: Path | None) -> None:

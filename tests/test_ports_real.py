@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 import serial
 
-from hil_sim.ports import Announcement, Pace, PortError, Pty, Tcp, announcements, serve
+from hil_sim.announcement import Announcement, announcements
+from hil_sim.ports import Pace, PortError, Pty, Tcp, serve
 from tests.bench_fakes import bench_of
 
 PATIENCE_S = 30
