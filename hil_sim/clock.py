@@ -40,10 +40,8 @@ class Clock:
 
     def at(self, time_us: int, callback: Callback) -> Event:
         """Queue `callback` for `time_us` (for now, if that has passed) and return its event."""
-        if time_us < self.now_us:
-            time_us = self.now_us
-        if time_us < self.limit_us:
-            self.limit_us = time_us
+        time_us = max(time_us, self.now_us)
+        self.limit_us = min(self.limit_us, time_us)
         self._order += 1
         event = Event(callback)
         heappush(self._queue, (time_us, self._order, event))

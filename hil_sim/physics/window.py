@@ -2,7 +2,7 @@ r"""Charge drawn in the two kinds of windows in which a current monitor converts
 
 Windows of lengths a (shunt) and b (bus) follow each other without a gap from the time t_s on; what a conversion sees is
 
-.. math::  Q_a = \sum_j \int_{W_j} I \, dt, \quad W_j = [t_s + j (a + b),\; t_s + j (a + b) + a] \cap [t_0, t_1]      (W1)
+.. math::  Q_a = \sum_j \int_{W_j} I \, dt, \quad W_j = [t_s + j (a + b), t_s + j (a + b) + a] \cap [t_0, t_1]   (W1)
 
 and likewise Q_b. With I from the circuit's exact solution a window shorter than the PWM period aliases as on the board.
 Derived here; checked in tests/test_bench_supply.py.
