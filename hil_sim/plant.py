@@ -18,7 +18,7 @@ import numpy as np
 
 from hil_sim.physics import body, coil
 from hil_sim.physics.coilset import coils_of, cold
-from hil_sim.physics.compiled import Array, prepare
+from hil_sim.physics.compiled import Array, bound, prepare
 from hil_sim.physics.contact import crossings
 from hil_sim.physics.motion import (
     APEX,
@@ -50,7 +50,7 @@ SETTLING_DRAG = 20.0  # [1/s]
 class RingPlant:
     """Coils, ring and ground of one robot, at rest at time 0; a function of the powers given to it and nothing else."""
 
-    def __init__(self, robot: RobotFile, rho: float = 0.6, tolerance: float = 2e-6) -> None:
+    def __init__(self, robot: RobotFile, rho: float = 0.8, tolerance: float = 2e-6) -> None:
         prepare(body.advance)
         ground, count = robot.ground, len(robot.labels)
         self.labels = list(robot.labels)
@@ -65,6 +65,9 @@ class RingPlant:
         self._state = cold(coils, self._motion.spokes[LENGTH])
         coil.measure(self._state, self._motion.spokes[LENGTH], coils)
         self._settle(robot.start.settle)
+        self._power = np.zeros(count)
+        self._parts = (self._ring, self._coils, self._state, self._world, self._method, self._motion)
+        self._advance = bound(body.advance, *self._parts, self._power, 0.0)
         self._start = centre(self._ring, self._motion.now[0])
         self._stored_at_start = sum(self._stored().values())
 
@@ -86,8 +89,8 @@ class RingPlant:
 
     def advance(self, duration_us: int, coil_power_w: Array) -> None:
         """Let time pass with the mean electrical power of each coil."""
-        duration, m = duration_us * 1e-6, self._motion
-        body.advance(self._ring, self._coils, self._state, self._world, self._method, m, coil_power_w, duration)
+        self._power[:] = coil_power_w
+        self._advance(*self._parts, self._power, duration_us * 1e-6)
 
     def observe(self) -> dict[str, Any]:
         """Return what a motion capture system and a thermal camera would say."""

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numpy as np
-from numba import njit
+from numba import njit, typeof
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -42,3 +42,14 @@ def prepare(entry: Any) -> bool:
     if cold:
         print("softrig: compiling the physics kernels, once (about 20 s) ...", file=sys.stderr, flush=True)
     return cold
+
+
+def bound(entry: Any, *arguments: Any) -> Callable[..., Any]:
+    """Return the machine code of `entry` for arguments of exactly these types, after one call with them.
+
+    It does not look at the types again, which for many arrays takes longer than the work: the caller must keep them.
+    """
+    entry(*arguments)
+    types = tuple(typeof(argument) for argument in arguments)  # type: ignore[no-untyped-call]
+    code: Callable[..., Any] = entry.overloads[types].entry_point
+    return code
