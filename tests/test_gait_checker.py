@@ -8,6 +8,8 @@ import json
 import pytest
 
 from host.gait.checker import check
+from host.gait.diagnostics import Problems
+from host.gait.trial import Trial
 from tests.gait_scripts import compiled, report, round_robot
 
 STEP_MS = 5
@@ -90,6 +92,20 @@ def test_heat_is_what_the_firmware_would_count_rounded_against_the_script():
 
     expected = heat_mj(0.8 * FULL_MW, 1000, heat_mj(0, 2000, heat_mj(0.8 * FULL_MW, 1000)))
     assert expected < coil(made, "A").heat_peak_mj < expected + 2
+
+
+def test_heat_covers_the_firmwares_rounding_to_microjoules():
+    profile = round_robot()
+    trial = Trial(profile, Problems(()))
+    heat_uj = peak_uj = 0
+
+    trial.play(compiled("repeat 40:\n    fire A at 7 % for 500 ms\n    wait 100 ms").plan)
+    for turn_ms in range(0, 40 * 600, STEP_MS):
+        power_uw = 26_600 if turn_ms % 600 < 500 else 0
+        heat_uj += power_uw * STEP_MS // 1000 - heat_uj * STEP_MS // 3000
+        peak_uj = max(peak_uj, heat_uj)
+
+    assert peak_uj <= trial.coils[0].heat_peak_uj < peak_uj + 1000
 
 
 def test_a_loop_of_ten_thousand_turns_is_worked_out_as_exactly_as_one_of_few():

@@ -75,6 +75,14 @@ def test_the_same_coil_may_follow_itself_within_a_together():
     assert [row[2] for row in ops(body) if row[0] == "fire"] == [900, 300]
 
 
+def test_one_statement_of_a_together_may_follow_another_on_the_same_coil():
+    late = "def late():\n    wait 100 ms\n    fire A at 30 % for 100 ms\n"
+    body = late + "together:\n    fire A at 90 % for {} ms\n    late()"
+
+    assert [row[2] for row in ops(body.format(100)) if row[0] == "fire"] == [900, 300]
+    assert mistakes(body.format(101)) == [("E135", 3, 5)]
+
+
 def test_repeats_stay_loops_on_the_robot():
     assert ops("repeat 3:\n    repeat 2:\n        wait 1 s") == [
         ("repeat", 3), ("repeat", 2), ("delay", 1000), ("next",), ("next",),
@@ -117,6 +125,10 @@ def test_a_condition_on_an_argument_is_on_its_coils():
     body = "def cool(c):\n    wait until all $c.temperature < 45 C timeout 4 s else abort\ncool(A B)\ncool(C)"
 
     assert [row[1].mask for row in ops(body)] == [0b11, 0b100]
+
+
+def test_an_argument_hides_a_param_of_its_name():
+    assert ops("param t = 1 s\ndef f(t):\n    wait $t\nf(2 s)") == [("delay", 2000)]
 
 
 def test_params_fold_on_the_host_in_the_order_of_the_text():
@@ -214,7 +226,14 @@ def test_a_file_included_twice_is_read_once():
         "gaits/lib/base.gait": "gait 1\nparam duty = 60 %\n",
     }
 
-    assert included(files, 'include "lib/base.gait"\ninclude "lib/push.gait"\npush(A)').code
+    body = 'include "lib/base.gait"\ninclude "lib/push.gait"\npush(A)'
+    seen = []
+    read = reader({"gaits/main.gait": HEAD + body, **files})
+
+    load("gaits/main.gait", lambda path: seen.append(path) or read(path))
+
+    assert sorted(seen) == ["gaits/lib/base.gait", "gaits/lib/push.gait", "gaits/main.gait"]
+    assert included(files, body).code
 
 
 def test_a_circle_of_includes_is_refused_where_it_closes():

@@ -133,6 +133,13 @@ def test_what_a_broken_line_declares_is_not_called_unknown():
     assert mistakes(body) == [("E101", 1, 12), ("E107", 2, 1)]
 
 
+def test_a_block_that_is_indented_for_no_reason_is_still_read():
+    block = "    fire Q at 5 % fro 1 s\n    repeat 2:\n        wait\n        fire S at 5 % ;\n"
+    body = f"{FIRE}\n{block}fire R at 5 % for 1 s"
+
+    assert mistakes(body) == [("E105", 2, 5), ("E101", 2, 19), ("E140", 4, 9), ("E108", 5, 23), ("E131", 6, 6)]
+
+
 def test_mistakes_in_a_def_that_nobody_calls_are_found():
     assert mistakes("def f(c):\n    fire $c at 60 ms for 1 s") == [("E122", 2, 16)]
 
@@ -151,6 +158,8 @@ def test_a_mistake_in_a_def_is_told_once_however_often_it_is_called():
         ("fire fromt at 60 % for 600 ms", "did you mean `front`?"),
         ("param speed = 3 s\nwait $sped", "did you mean `speed`?"),
         ("def push():\n    wait 1 s\npusch()", "did you mean `push`?"),
+        ("guard A.temperature <= 60 C", "write `<`"),
+        ("guard A.temperature != 60 C", "write `>`"),
         ("guard A.temprature > 60 C", "did you mean `temperature`?"),
         ("wait 3 seconds", "did you mean `s`?"),
         ("fire A at 60 percent for 1 s", "did you mean `%`?"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import Any, cast
 
@@ -14,11 +15,12 @@ Items = list[Any]
 
 
 class Builder(Transformer[Token, Any]):
-    """Turns the parse tree of one file into the tree of `host.gait.tree`."""
+    """Turns the parse tree of one file into the tree of `host.gait.tree`; `shifts` are columns by line."""
 
-    def __init__(self, file: str) -> None:
+    def __init__(self, file: str, shifts: Sequence[int]) -> None:
         super().__init__(visit_tokens=False)
         self._file = file
+        self._shifts = shifts
 
     def file(self, items: Items) -> tuple[tree.Statement, ...]:
         """Return the statements of a file."""
@@ -157,4 +159,5 @@ class Builder(Transformer[Token, Any]):
     def _place(self, first: Token, last: Token | None = None) -> Place:
         end = last if last is not None else first
         line, column, end_column = first.line or 1, first.column or 1, end.end_column or 2
-        return Place(self._file, line, column, end_column)
+        shift = self._shifts[line - 1]
+        return Place(self._file, line, column + shift, end_column + shift)

@@ -167,9 +167,6 @@ class _Expander:
         return scope.value(node)
 
     def _step(self, place: Place, where: Where) -> int:
-        for step in reversed(self.steps[-8:]):
-            if step.place == place and step.calls == where.calls:
-                return step.number
         text = code_part(self._line(place)).strip()
         self.steps.append(Step(len(self.steps) + 1, place, text, where.calls))
         return len(self.steps)

@@ -39,9 +39,9 @@ class Blocks(Indenter):
 
     def handle_NL(self, token: Token) -> Iterator[Token]:
         """Yield the tokens of a line end, and of the blocks it opens or closes."""
-        indent = len(token.rsplit("\n", 1)[1])
-        if (indent < self.indent_level[-1] and indent not in self.indent_level) or len(self.indent_level) > DEPTH_MAX:
-            raise BadIndent(token.end_line or 1, indent, len(self.indent_level) > DEPTH_MAX)
+        column = len(token.rsplit("\n", 1)[1])
+        if (column < self.indent_level[-1] and column not in self.indent_level) or len(self.indent_level) > DEPTH_MAX:
+            raise BadIndent(token.end_line or 1, len(self.indent_level) > DEPTH_MAX)
         yield from super().handle_NL(token)
 
 
@@ -70,12 +70,12 @@ def parse_file(text: str, name: str) -> tuple[File, list[Diagnostic]]:
         try:
             parsed = grammar().parse("\n".join(readable) + "\n", start="file")
         except (UnexpectedInput, BadIndent) as error:
-            diagnostic = syntax.say(error, lines, name)
+            diagnostic = syntax.say(error, _shifts(lines, readable), lines, name)
             found.append(diagnostic)
             if isinstance(error, BadIndent) or not _set_aside(readable, diagnostic):
                 break
             continue
-        statements = cast(tuple[tree.Statement, ...], Builder(name).transform(parsed))
+        statements = cast(tuple[tree.Statement, ...], Builder(name, _shifts(lines, readable)).transform(parsed))
         return File(name, statements, tuple(_comments(lines, name)), tuple(lines)), found
     return File(name, (), (), tuple(lines), readable=False), found
 
@@ -86,9 +86,9 @@ def parse_value(text: str, name: str) -> Expression:
     if found:
         raise GaitError(found)
     try:
-        return cast(Expression, Builder(name).transform(grammar().parse(text, start="value")))
+        return cast(Expression, Builder(name, [0]).transform(grammar().parse(text, start="value")))
     except UnexpectedInput as error:
-        raise GaitError([syntax.say(error, [text], name)]) from None
+        raise GaitError([syntax.say(error, [0], [text], name)]) from None
 
 
 def _set_aside(lines: list[str], diagnostic: Diagnostic) -> bool:
@@ -113,6 +113,11 @@ def _shift_left(lines: list[str], at: int) -> None:
         if holds_statement(lines[number]) and indent(lines[number]) < deep:
             break
         lines[number] = lines[number][min(excess, indent(lines[number])) :]
+
+
+def _shifts(lines: list[str], readable: list[str]) -> list[int]:
+    """Return by how many columns each line was moved to the left to be readable."""
+    return [indent(line) - indent(moved) for line, moved in zip(lines, readable, strict=True)]
 
 
 def _comments(lines: list[str], name: str) -> Iterator[Comment]:

@@ -87,7 +87,6 @@ def _block(plan: Iterable[Op]) -> bytes:
     for op in plan:
         if isinstance(op, Loop):
             parts += [program.repeat(op.count), _block(op.body), program.next_()]
-            step = 0
             continue
         if not isinstance(op, Guard) and op.step != step:
             step = op.step

@@ -35,27 +35,29 @@ SIGNS = {
 class BadIndent(Exception):
     """A line steps back to a column where no block is open, or blocks are nested too deeply."""
 
-    def __init__(self, line: int, indent: int, deep: bool) -> None:
+    def __init__(self, line: int, deep: bool) -> None:
         super().__init__(line)
         self.line = line
-        self.indent = indent
         self.deep = deep
 
 
-def say(error: UnexpectedInput | BadIndent, lines: list[str], name: str) -> Diagnostic:
-    """Return the diagnostic for what the parser met, quoting `lines` as they were written."""
+def say(error: UnexpectedInput | BadIndent, shifts: list[int], lines: list[str], name: str) -> Diagnostic:
+    """Return the diagnostic for what the parser met, quoting `lines` as they were written.
+
+    `shifts` are the columns by which each line was moved to the left before it was read.
+    """
     if isinstance(error, BadIndent):
         return _say_indent(error, lines, name)
     if isinstance(error, UnexpectedCharacters):
-        return _say_character(error, lines, name)
+        return _say_character(error, shifts, lines, name)
     assert isinstance(error, UnexpectedToken)
-    return _Reader(error, lines, name).say()
+    return _Reader(error, shifts, lines, name).say()
 
 
 class _Reader:
     """Puts one unexpected token into words."""
 
-    def __init__(self, error: UnexpectedToken, lines: list[str], name: str) -> None:
+    def __init__(self, error: UnexpectedToken, shifts: list[int], lines: list[str], name: str) -> None:
         token: Token = error.token
         self.kind = token.type
         self.text = str(token)
@@ -65,6 +67,7 @@ class _Reader:
         self.line, self.column = token.line or len(lines), token.column or 1
         if self.kind == "$END":
             self.line = max((n for n, line in enumerate(lines, 1) if line.strip()), default=1)
+        self.column += shifts[self.line - 1]
         words = lines[self.line - 1].split()
         self.first = words[0].split("(")[0].rstrip(":") if words else ""
 
@@ -172,21 +175,20 @@ class _Reader:
 
 def _say_indent(error: BadIndent, lines: list[str], name: str) -> Diagnostic:
     line = lines[error.line - 1]
+    column = indent(line) + 1
     if error.deep:
-        return _at(name, error.line, error.indent + 1, "E114", "blocks are nested too deeply", line)
-    return _at(
-        name, error.line, error.indent + 1, "E105", "this line steps back to a column where no block began", line
-    )
+        return _at(name, error.line, column, "E114", "blocks are nested too deeply", line)
+    return _at(name, error.line, column, "E105", "this line steps back to a column where no block began", line)
 
 
-def _say_character(error: UnexpectedCharacters, lines: list[str], name: str) -> Diagnostic:
-    line = lines[error.line - 1]
-    sign = line[error.column - 1 : error.column]
+def _say_character(error: UnexpectedCharacters, shifts: list[int], lines: list[str], name: str) -> Diagnostic:
+    line, column = lines[error.line - 1], error.column + shifts[error.line - 1]
+    sign = line[column - 1 : column]
     if sign == '"':
-        return _at(name, error.line, error.column, "E113", "the text is not closed", line, 'close it with `"`')
+        return _at(name, error.line, column, "E113", "the text is not closed", line, 'close it with `"`')
     if sign == "$":
-        return _at(name, error.line, error.column, "E109", "a name is missing after `$`", line)
-    return _at(name, error.line, error.column, "E108", f"`{sign}` has no meaning here", line)
+        return _at(name, error.line, column, "E109", "a name is missing after `$`", line)
+    return _at(name, error.line, column, "E108", f"`{sign}` has no meaning here", line)
 
 
 def _at(name: str, line: int, column: int, code: str, message: str, source: str, help: str = "") -> Diagnostic:
