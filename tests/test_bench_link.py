@@ -5,7 +5,7 @@ import signal
 import pytest
 
 from hil_sim.address import AddressError, parse
-from hil_sim.link import SimLink
+from hil_sim.link import SimLink, open_link
 from hil_sim.worlds.costs import BOOT_US
 from tests.bench_fakes import bench_of
 
@@ -95,10 +95,11 @@ def test_the_hosts_own_polling_changes_nothing(line):
 
 def test_a_bench_driven_by_hand_is_not_stopped_by_bytes(line):
     link = line(TALKING)
+    link.read(0.001)
 
     link.bench.run(0.5)
 
-    assert link.now_s() == 0.5
+    assert link.now_s() == 0.501
 
 
 def test_ctrl_c_meets_the_host_and_never_the_firmware(line, monkeypatch):
@@ -119,6 +120,34 @@ def test_a_closed_line_says_so_and_may_be_closed_again(line):
 
     with pytest.raises(OSError, match="the bench is closed"):
         link.read(1.0)
+
+
+@pytest.mark.parametrize(
+    ("address", "message"),
+    [
+        ("sim:circlar", "no robot 'circlar'; did you mean circular"),
+        ("sim:./none.toml", "no such robot file"),
+        ("sim:circular?mu=-1", "ground.friction_ratio"),
+        ("sim:circular?set=shell.mas_g:1", "shell.mas_g"),
+    ],
+)
+def test_a_robot_that_cannot_be_built_is_refused_as_a_bad_value(address, message):
+    with pytest.raises(ValueError, match=message):
+        open_link(address)
+
+
+def test_the_real_robot_boots_stands_still_and_answers_to_its_seed():
+    hashes = []
+    for seed in (1, 1, 2):
+        link = open_link(f"sim:circular?seed={seed}")
+        link.read(0.5)
+        hashes.append((link.bench.board.unique_id, link.bench.trace_sha256()))
+        assert link.bench.crashes == []
+        assert abs(link.observer.observe()["travel_mm"]) < 0.01
+        link.close()
+
+    assert hashes[0] == hashes[1]
+    assert hashes[0][0] != hashes[2][0]
 
 
 def test_an_address_sets_numbers_of_the_robot_and_of_the_run():

@@ -74,6 +74,9 @@ def test_power_follows_the_duty_and_the_resistances(tmp_path):
     current_a = 2.0 / (9.5 + 0.5 + 0.02)
     assert bench.plant.calls[-1][1][0] == pytest.approx(current_a**2 * 9.5 * duty)
     assert bench.plant.calls[-1][1][1:] == [0.0] * 7
+    bench.plant.resistance[0] = 4.5
+    bench.run(0.01)
+    assert bench.plant.calls[-1][1][0] == pytest.approx((2.0 / 5.02) ** 2 * 4.5 * duty)
     bench.close()
 
 

@@ -224,3 +224,14 @@ def test_a_hung_processor_is_reset_by_its_watchdog(tmp_path):
     assert bench.world.running
     assert bench.world.resets == 1
     bench.close()
+
+
+def test_what_was_due_first_happens_before_a_firmware_that_wakes_at_the_same_instant(tmp_path):
+    bench = bench_of(tmp_path, "time.sleep_us(1000)\nprint('firmware')")
+    wakes_us = BOOT_US + 2 + 1000  # two pins are set up first
+    bench.clock.at(wakes_us, lambda: bench.world.console.append("event\n"))
+
+    bench.clock.run_until(wakes_us)
+    bench.close()
+
+    assert said(bench) == ["event", "firmware"]

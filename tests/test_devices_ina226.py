@@ -252,3 +252,26 @@ def test_a_change_after_a_long_quiet_time_is_weighed_within_its_conversion(rig):
     rig.wait_us(2200 - 275)
 
     assert rig.get(0x01) == 4000 + 3000  # a quarter of 1100 us at 4000, the rest at 8000
+
+
+def test_a_conversion_that_saw_a_change_is_followed_by_one_that_did_not(rig):
+    rig.put(0.01, 2.0)
+    rig.wait_us(275)
+    rig.put(0.02, 2.0)
+    rig.wait_us(2200 - 275)
+    assert rig.get(0x01) == 7000
+
+    rig.wait_us(2200)
+
+    assert rig.get(0x01) == 8000
+
+
+def test_reading_the_flags_does_not_silence_an_alert_that_is_not_latched(rig):
+    rig.set(0x07, 3000)
+    rig.set(0x06, 0x8000)
+    rig.put(0.01, 2.0)
+    rig.wait_us(2200)
+
+    assert rig.get(0x06) & 0x10
+
+    assert rig.chip.alert_level() == 0
