@@ -97,14 +97,18 @@ class Channels:
 
     def busy(self, now_ms: int) -> bool:
         """Return whether a coil has an order that goes on beyond now."""
-        for channel in range(self.count):
-            if self.on_mask >> channel & 1 and now_ms - self._end_ms[channel] < 0:
-                return True
-        return False
+        return self._busy_mask(now_ms) != 0
 
     def on_for_ms(self, channel: int, now_ms: int) -> int:
         """Return for how long that coil has been on without a pause."""
         return now_ms - self._since_ms[channel]
+
+    def _busy_mask(self, now_ms: int) -> int:
+        mask = 0
+        for channel in range(self.count):
+            if self.on_mask >> channel & 1 and now_ms - self._end_ms[channel] < 0:
+                mask |= 1 << channel
+        return mask
 
     def _check(self, mask: int, duty_permille: int, hold_ms: int, now_ms: int) -> None:
         if not 0 < mask < 1 << self.count:
@@ -115,7 +119,7 @@ class Channels:
             raise Refused(codes.HOLD_LIMIT, _first(mask), hold_ms, self._coil.hold_max_ms)
         if duty_permille == 0:
             return
-        at_once = _bits(mask | self.on_mask)
+        at_once = _bits(mask | self._busy_mask(now_ms))
         if at_once > self._at_once_max:
             raise Refused(codes.AT_ONCE_LIMIT, _first(mask), at_once, self._at_once_max)
         for channel in range(self.count):

@@ -67,6 +67,7 @@ class Core:
     def control(self, now_ms: int) -> int:
         """Sense, guard, sequence and drive once; return the code of a fault, or 0. Allocates nothing."""
         self.sense.read()
+        self.sense.update(now_ms, self.channels.on_mask, self.channels.duty_permille)
         powered = self.state in (messages.ARMED, messages.RUNNING)
         code = self.guard.check(now_ms, powered)
         if not code and self.state == messages.RUNNING:
@@ -78,7 +79,6 @@ class Core:
             code = codes.ON_TOO_LONG
         self._check_chips()
         self.channels.write()
-        self.sense.update(now_ms, self.channels.on_mask, self.channels.duty_permille)
         self.board.beat()
         return code
 

@@ -27,6 +27,7 @@ class Sense:
         self._coil = profile.coil
         self._count = count
         self._turn = 0
+        self._updated_ms = 0
         self._full_uw = 0
 
     def read(self) -> None:
@@ -53,7 +54,10 @@ class Sense:
         self._read_supply()
 
     def update(self, now_ms: int, on_mask: int, duty_permille: array) -> None:
-        """Bring the estimates up to now: coils that are on at each step, the others in turn."""
+        """Bring the estimates up to now, with the duties that have held since the last call.
+
+        Coils that are on are brought up at each step, the others in turn.
+        """
         self.hottest = self.fullest = -1
         turn = self._turn % self._count
         if not on_mask >> turn & 1:
@@ -61,10 +65,12 @@ class Sense:
         channel = 0
         while on_mask:
             if on_mask & 1:
+                self._catch_up(channel, self._updated_ms, 0)  # it was off until then, or is up to date
                 self._catch_up(channel, now_ms, self._full_uw * duty_permille[channel] // 1000)
                 self._rank(channel)
             on_mask >>= 1
             channel += 1
+        self._updated_ms = now_ms
 
     def _catch_up(self, channel: int, now_ms: int, power_uw: int) -> None:
         passed_ms = now_ms - self._seen_ms[channel]

@@ -1,9 +1,9 @@
 """A robot on the bench with a host at its line, for HIL tests: every layer real, time virtual.
 
-    rig = HilRig("sim:circular")
-    rig.fire("A", duty_percent=80, hold_s=0.3)
-    rig.run(seconds=0.1)
-    rig.happens("cable-cut")
+rig = HilRig("sim:circular")
+rig.fire("A", duty_percent=80, hold_s=0.3)
+rig.run(seconds=0.1)
+rig.happens("cable-cut")
 """
 
 from dataclasses import dataclass

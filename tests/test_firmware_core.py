@@ -373,3 +373,23 @@ def test_after_a_watchdog_reset_it_stays_tripped_until_cleared():
     core.step(0, b"")
 
     assert (core.state, core.code) == (messages.TRIPPED, codes.WATCHDOG)
+
+
+def test_coils_whose_order_ends_in_this_step_do_not_count_as_on_at_once(rig):
+    six = program.fire(0b00111111, 300, 50) + program.delay(50) + program.fire(0b11111000, 300, 50) + program.halt()
+
+    run_program(rig, six)
+    rig.run(200)
+
+    assert rig.events("finished")
+
+
+def test_a_coil_is_not_charged_for_the_time_before_it_was_switched_on(rig):
+    rig.arm()
+    rig.run(300)
+
+    rig.fire(0b10000000, duty_permille=1000, hold_ms=100)
+    rig.run(140)
+
+    full_uw = 2_000_000 // 10_020 * (2_000_000 // 10_020) * 9500 // 1000
+    assert rig.core.sense.heat_uj[7] == pytest.approx(full_uw * 100 // 1000, rel=0.05)
