@@ -1,7 +1,7 @@
 """INA226, current and voltage monitor (Texas Instruments SBOS547)."""
 
 CONFIG, BUS_VOLTAGE, CURRENT, CALIBRATION = 0x00, 0x02, 0x04, 0x05
-# 4 averages of 2.116 ms (shunt) and 332 us (bus): a value every 9.8 ms. The conversions fall on all phases of the coils'
+# 4 averages of 2.116 ms (shunt) and 332 us (bus): a value every 9.8 ms. They fall on all phases of the coils'
 # PWM (655 us), so that the mean is right within 0.5 % of full duty; many other settings beat with the PWM by 50 %.
 AVERAGED = 0x42AF
 
