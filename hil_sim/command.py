@@ -73,16 +73,16 @@ def robots(as_json: bool) -> None:
 
 
 def _bench(name: str, seed: int | None, slope: float | None) -> Bench:
-    from hil_sim.address import AddressError, parse  # noqa: PLC0415
+    from hil_sim.address import parse  # noqa: PLC0415
 
     try:
         address = parse(name)
         _override(address, seed, slope)
         return _assembled(address)
-    except AddressError as error:
-        raise click.UsageError(str(error)) from error
-    except (LookupError, ValueError) as error:
+    except LookupError as error:
         raise NoRobot(str(error)) from error
+    except ValueError as error:
+        raise click.UsageError(str(error)) from error
 
 
 def _assembled(address: Address) -> Bench:

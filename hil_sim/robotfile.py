@@ -27,6 +27,10 @@ class RobotFileError(ValueError):
     """A robot file, its name or an override that cannot be used; the text has one line for each mistake."""
 
 
+class NoSuchRobot(RobotFileError, LookupError):
+    """There is no robot of that name, and no file at that path."""
+
+
 @dataclass(frozen=True)
 class Wiring:
     """The resistances between supply and coils, and where each coil is soldered."""
@@ -96,10 +100,10 @@ def find(robot: str) -> Path:
     if path.is_file():
         return path
     if is_path:
-        raise RobotFileError(f"{robot}: no such robot file")
+        raise NoSuchRobot(f"{robot}: no such robot file")
     known = names()
     what = f"no robot {robot!r}{near(robot, known)}"
-    raise RobotFileError(f"{what}; known are {', '.join(known)}, or give the path of a robot file")
+    raise NoSuchRobot(f"{what}; known are {', '.join(known)}, or give the path of a robot file")
 
 
 def _robot(path: Path, data: dict[str, Any], entries: Mapping[str, Entry]) -> RobotFile:

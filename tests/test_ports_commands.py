@@ -21,7 +21,7 @@ def test_robots_lists_the_address_of_each():
     [
         (["circlar"], 3, "no robot 'circlar'; did you mean circular?"),
         (["circular?slop=1"], 2, "no option 'slop'"),
-        (["circular", "--slope", "61"], 3, "ground.slope_deg"),
+        (["circular", "--slope", "61"], 2, "ground.slope_deg"),
         (["circular", "--speed", "0"], 2, "--speed"),
         (["./none.toml"], 3, "no such robot file"),
     ],
