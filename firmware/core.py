@@ -68,7 +68,7 @@ class Core:
         """Sense, guard, sequence and drive once; return the code of a fault, or 0. Allocates nothing."""
         self.sense.read()
         self.sense.update(now_ms, self.channels.on_mask, self.channels.duty_permille)
-        powered = self.state in (messages.ARMED, messages.RUNNING)
+        powered = messages.ARMED <= self.state <= messages.RUNNING
         code = self.guard.check(now_ms, powered)
         if not code and self.state == messages.RUNNING:
             code = self._play(now_ms)

@@ -1,0 +1,164 @@
+"""A run of the firmware's core that any Python can make: prints every byte it sends and every duty it sets.
+
+Runs under CPython and under MicroPython; tests/test_firmware_micropython.py compares what the two print. Arguments:
+the profile's path, then `lock` to forbid memory allocation in the control step.
+"""
+
+import sys
+from binascii import crc32, hexlify
+
+from firmware.core import Core
+from firmware.profile import Profile
+from protocol import messages, program
+from protocol.frames import STOP
+from protocol.link import Link
+
+SESSION = 77
+
+
+class Chip:
+    """A PWM chip that prints what it is told."""
+
+    address = 0x60
+
+    def begin(self):
+        print("begin")
+
+    def set(self, output, permille):
+        out("set", output, permille)
+
+    def all_off(self):
+        print("all off")
+
+    def configured(self):
+        return True
+
+
+class Monitor:
+    """A supply monitor that always reads the same."""
+
+    address = 0x40
+    ma = 20
+
+    def begin(self):
+        print("begin")
+
+    def configured(self):
+        return True
+
+    def current_ma(self):
+        return self.ma
+
+    def voltage_mv(self):
+        return 2000
+
+
+class Table:
+    """A board on a table top."""
+
+    def pwm(self, address):
+        return Chip()
+
+    def monitor(self, shunt_mohm):
+        return Monitor()
+
+    def power(self, on):
+        out("power", int(on), 0)
+
+    def beat(self):
+        pass
+
+    def estop_closed(self):
+        return True
+
+    def board_decidegc(self):
+        return 251
+
+
+told = []
+LOCKED = "lock" in sys.argv
+
+
+def out(what, first, second):
+    """Note what a chip was told, unless memory is locked; printed between the steps."""
+    if not LOCKED:
+        told.append((what, first, second))
+
+
+class Locked(Core):
+    """A core whose control step may not allocate."""
+
+    def control(self, now_ms):
+        micropython.heap_lock()
+        try:
+            return super().control(now_ms)
+        finally:
+            micropython.heap_unlock()
+
+
+def script():
+    """Return a program with every op in it."""
+    warm = program.Condition(program.TEMPERATURE, program.ANY, program.ABOVE, 400, 0xFF)
+    hot = program.Condition(program.TEMPERATURE, program.ALL, program.ABOVE, 1100, 0xFF)
+    ops = (
+        program.guard(hot), program.repeat(2), program.step(1), program.fire(0b101, 700, 200, 600), program.delay(100),
+        program.step(2), program.ramp(0b10, 400, 300, 0, 150), program.wait(warm, 300, program.CONTINUE),
+        program.next_(), program.off(0b10), program.halt(),
+    )  # fmt: skip
+    return b"".join(ops)
+
+
+def orders(crc):
+    """Return (time_ms, message, fields) of a whole session, mistakes included."""
+    code = script()
+    return [
+        (0, messages.HELLO, {"version": 1, "session": SESSION}),
+        (20, messages.DICTIONARY, {"offset": 0}),
+        (30, messages.FIRE, {"coils": 1, "duty_permille": 500, "hold_ms": 100}),
+        (40, messages.SUBSCRIBE, {"period_ms": 50}),
+        (50, messages.ARM, {"session": SESSION, "lease_ms": 0}),
+        (60, messages.FIRE, {"coils": 3, "duty_permille": 1001, "hold_ms": 100}),
+        (70, messages.FIRE, {"coils": 3, "duty_permille": 321, "hold_ms": 100}),
+        (200, messages.PROGRAM, {"header": program.header(code, crc)}),
+        (210, messages.CODE, {"offset": 0, "code": code}),
+        (220, messages.START, {}),
+        (2000, messages.STATUS_REQUEST, {}),
+        (2010, messages.FIRE, {"coils": 0x80, "duty_permille": 1000, "hold_ms": 9000}),
+    ]
+
+
+def session(core, profile):
+    """Run the session, then stop; print all that happens."""
+    host = Link(core.link.decoder.seed)
+    plan = orders(profile.crc)
+    for now_ms in range(0, 4500, 5):
+        line = b""
+        while plan and plan[0][0] <= now_ms:
+            _, message, fields = plan.pop(0)
+            if message.number < 16:
+                host.post(message.number, message.pack(**fields))
+            else:
+                host.send(message.number, message.pack(**fields), now_ms)
+        if now_ms < 4000:
+            host.acknowledge()
+            line = host.poll(now_ms)
+        if now_ms == 3600:
+            line += STOP
+        answer = core.step(now_ms, line)
+        host.receive(answer, now_ms)
+        for row in told:
+            print(now_ms, *row)
+        told.clear()
+        if answer:
+            print(now_ms, "sent", hexlify(answer).decode())
+
+
+with open(sys.argv[1], "rb") as file:
+    profile = Profile(file.read())
+if LOCKED:
+    import micropython
+
+    session(Locked(Table(), profile, 1), profile)
+else:
+    session(Core(Table(), profile, 1), profile)
+print("dictionary", crc32(messages.dictionary(profile.text)))
