@@ -35,6 +35,7 @@ from hil_sim.physics.motion import (
     STEPS,
     TILT_WORK,
     TIME,
+    TOLERANCE,
     TURN,
     method_of,
     motion_of,
@@ -50,7 +51,7 @@ SETTLING_DRAG = 20.0  # [1/s]
 class RingPlant:
     """Coils, ring and ground of one robot, at rest at time 0; a function of the powers given to it and nothing else."""
 
-    def __init__(self, robot: RobotFile, rho: float = 0.8, tolerance: float = 2e-6) -> None:
+    def __init__(self, robot: RobotFile, rho: float = 0.8, tolerance: float = TOLERANCE) -> None:
         prepare(body.advance)
         ground, count = robot.ground, len(robot.labels)
         self.labels = list(robot.labels)
@@ -146,11 +147,15 @@ class RingPlant:
         return {"steps": int(tally[STEPS]), "rejected": int(tally[REJECTED]), "iterations": int(tally[ITERATIONS])}
 
     def _settle(self, seconds: float) -> None:
-        """Come to rest on the level plane in thick air, then begin to count."""
+        """Come to rest on the level plane in thick air, then begin to count.
+
+        Strictly: a round ring of nodes stands on one of them as on a point, and what is left would tip it to a side.
+        """
+        strict = self._method._replace(share=0.0)
         level, thick = self._world._replace(slope=0.0), self._ring._replace(drag=SETTLING_DRAG)
         tally, now, idle = self._motion.tally, self._motion.now, np.zeros(len(self.labels))
         if seconds > 0.0:
-            body.advance(thick, self._coils, self._state, level, self._method, self._motion, idle, seconds)
+            body.advance(thick, self._coils, self._state, level, strict, self._motion, idle, seconds)
         now[1:3] = 0.0
         keep = tally[[STEP, TURN]]
         tally[:] = 0.0

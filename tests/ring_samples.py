@@ -66,7 +66,7 @@ def oval(body, bend=0.3):
 
 def run(body, m, seconds, gravity=(0.0, 0.0), step=None, rho=0.8):
     """Move for some seconds, in steps of a given length or as the error allows."""
-    method = method_of(rho) if step is None else method_of(rho, np.inf, step)
+    method = method_of(rho) if step is None else method_of(rho, np.inf, step, share=0.0)
     m.tally[STEP] = step or 1e-4
     march(body, *gravity, method, m, seconds)
     return m

@@ -56,14 +56,15 @@ BEND_LOSS, DRAG_LOSS, BEND_RATE, DRAG_RATE = range(8, 12)
 PEAK_FORCE, PEAK_T, APEX, CLEARANCE, TURN = range(12, 17)
 TALLIES = 17
 STEP_MAX = 5e-3  # [s]
+TOLERANCE = 2e-6  # [m]
 STEP_MIN = 2e-5  # [s] a shorter one is taken as it is: mass alone then makes the system definite
-RESIDUAL = 1e-8  # [N]
+RESIDUAL = 1e-9  # [N] the least that is asked of Newton's method
 ITERATIONS_MAX = 12
 CUTS_MAX = 5
 
 
 class Method(NamedTuple):
-    """Numbers of the time step: factors of (I1), the tolerance of one step [m] and the longest step [s]."""
+    """Numbers of the time step: factors of (I1), tolerance of a step [m], longest step [s], share left to Newton."""
 
     a_m: float
     a_f: float
@@ -71,6 +72,7 @@ class Method(NamedTuple):
     gamma: float
     tolerance: float
     longest: float
+    share: float
 
 
 class Motion(NamedTuple):
@@ -90,10 +92,13 @@ class Motion(NamedTuple):
     corner: Array
 
 
-def method_of(rho: float = 0.8, tolerance: float = 2e-6, longest: float = STEP_MAX) -> Method:
-    """Return the factors of (I1) for the damping `rho` of the highest frequency, 0 <= rho <= 1."""
+def method_of(rho: float = 0.8, tolerance: float = TOLERANCE, longest: float = STEP_MAX, share: float = 1e-3) -> Method:
+    """Return the factors of (I1) for the damping `rho` of the highest frequency, 0 <= rho <= 1.
+
+    `share` of the tolerated error is what Newton's method may leave; 0 stands for the least that makes sense.
+    """
     a_m, a_f = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
-    return Method(a_m, a_f, 0.25 * (1.0 - a_m + a_f) ** 2, 0.5 - a_m + a_f, tolerance, longest)
+    return Method(a_m, a_f, 0.25 * (1.0 - a_m + a_f) ** 2, 0.5 - a_m + a_f, tolerance, longest, share)
 
 
 def motion_of(ring: Ring, q: Array) -> Motion:
@@ -185,13 +190,14 @@ def attempt(ring: Ring, gx: float, gy: float, method: Method, m: Motion, h: floa
     for i in range(q.size):
         q[i] = m.now[0, i] + h * m.now[1, i] + 0.5 * h * h * m.now[2, i]
         x[i] = 0.0
+    enough = max(RESIDUAL, method.share * min(method.tolerance, TOLERANCE) * ca * ring.mass[0])
     before, cuts = np.inf, 0
     for _ in range(ITERATIONS_MAX):
         place(m, method, h)
         near = forces(ring, gx, gy, m, q, v, cv, m.new[3])
         error = residual(ring, method, m, rhs)
         m.tally[ITERATIONS] += 1.0
-        if error < RESIDUAL:
+        if error < enough:
             return True
         if not error < before and cuts < CUTS_MAX:
             cuts += 1
