@@ -126,6 +126,19 @@ def test_a_hub_that_is_thrown_at_the_rim_bounces_back():
     assert crossings(body, m.now[0]) == 0
 
 
+def test_a_rim_that_is_pulled_together_stops_at_its_own_thickness():
+    """Two opposite spokes draw the rim to a figure of eight; without contact it would cross."""
+    body = ring(r_hub=1e-4, drag=50.0)
+    m = floating(body)
+    m.spokes[SOFT, [2, 6]], m.spokes[FREE, [2, 6]] = 1000.0, 1e-5
+
+    run(body, m, 1.0)
+
+    gap = m.now[0, 2 * 8] - m.now[0, 2 * 24]
+    assert 0.0005 < gap < 0.0011
+    assert crossings(body, m.now[0]) == 0
+
+
 def test_a_rim_that_crosses_itself_and_a_hub_outside_are_counted():
     body = ring()
     q = floating(body).now[0]

@@ -48,6 +48,7 @@ from hil_sim.physics.ring import (
     spoke_forces,
     spoke_tangent,
 )  # fmt: skip
+from hil_sim.physics.touch import Pairs, leaps, list_pairs, no_pairs, touch_forces, touch_tangent
 
 # Entries of `tally`: time and next step [s], counts; work of coils, ground and tilting, losses [J] and their rates [W];
 TIME, STEP, STEPS, REJECTED, ITERATIONS, COIL_WORK, GROUND_WORK, TILT_WORK = range(8)
@@ -90,6 +91,7 @@ class Motion(NamedTuple):
     band: Array
     border: Array
     corner: Array
+    pairs: Pairs
 
 
 def method_of(rho: float = 0.8, tolerance: float = TOLERANCE, longest: float = STEP_MAX, share: float = 1e-3) -> Method:
@@ -111,7 +113,7 @@ def motion_of(ring: Ring, q: Array) -> Motion:
     return Motion(
         now, np.zeros((4, size)), np.zeros((GROUND_ROWS, n)), np.zeros((SPOKE_ROWS, ring.feet.size)), tally,
         np.zeros((RIM_ROWS, n + 2)), np.zeros((BLOCK_ROWS, n)), np.zeros((3, 3)), np.zeros((4, size)),
-        np.zeros((size, BAND)), np.zeros((size, BORDER)), np.zeros((7, BORDER)),
+        np.zeros((size, BAND)), np.zeros((size, BORDER)), np.zeros((7, BORDER)), no_pairs(),
     )  # fmt: skip
 
 
@@ -128,6 +130,7 @@ def forces(ring: Ring, gx: float, gy: float, m: Motion, q: Array, v: Array, cv: 
         f[2 * i] += ring.mass[2 * i] * (ring.drag * v[2 * i] - gx)
         f[2 * i + 1] += ring.mass[2 * i + 1] * (ring.drag * v[2 * i + 1] - gy)
     f[2 * n + 2] += ring.mass[2 * n + 2] * ring.drag * v[2 * n + 2]
+    touch_forces(ring, q, m.pairs, f)
     return hub_forces(ring, q, f)
 
 
@@ -148,6 +151,7 @@ def correct(ring: Ring, m: Motion, q: Array, v: Array, cv: float, ca: float, nea
     ground_tangent(ring, q, v, m.ground, cv, m.blocks)
     if near:
         hub_tangent(ring, q, m.blocks, m.hub)
+    touch_tangent(ring, q, m.pairs, m.blocks)
     diagonal = m.vectors[2]
     for i in range(q.size):
         diagonal[i] = (ca + ring.drag * cv) * ring.mass[i]
@@ -187,6 +191,7 @@ def attempt(ring: Ring, gx: float, gy: float, method: Method, m: Motion, h: floa
     ca = (1.0 - method.a_m) / ((1.0 - method.a_f) * method.beta * h * h)
     cv = method.gamma / (method.beta * h)
     rhs, x, q, v = m.vectors[0], m.vectors[1], m.new[0], m.new[1]
+    list_pairs(ring, m.now[0], m.pairs)
     for i in range(q.size):
         q[i] = m.now[0, i] + h * m.now[1, i] + 0.5 * h * h * m.now[2, i]
         x[i] = 0.0
@@ -269,7 +274,8 @@ def march(ring: Ring, gx: float, gy: float, method: Method, m: Motion, duration:
             h = 0.5 * left
         solved = attempt(ring, gx, gy, method, m, h)
         error = local_error(method, m, h) if solved else np.inf
-        if h > STEP_MIN and not error < 2.0 * method.tolerance:
+        good = error < 2.0 * method.tolerance and not leaps(m.now[0], m.new[0], m.pairs)
+        if h > STEP_MIN and not good:
             m.tally[REJECTED] += 1.0
             m.tally[STEP] = 0.5 * h
             continue
