@@ -1,9 +1,11 @@
 """Mistakes in a script: each is found, named, placed to the column, and said in words a researcher can act on."""
 
+import os
+
 import pytest
 
 from host.gait import errors
-from host.gait.script import loads
+from host.gait.script import load, loads
 from tests.gait_scripts import HEAD, compiled, diagnostics, mistakes, round_robot
 
 FIRE = "fire A at 60 % for 600 ms"
@@ -222,3 +224,14 @@ def test_a_robot_can_be_asked_for_before_it_is_known():
 
 def test_a_script_as_windows_writes_it_is_read():
     assert compiled("wait 1 s\r\nfire A at 5 % for 1 s\r", head=HEAD.replace("\n", "\r\n"), profile=round_robot()).code
+
+
+def test_a_file_that_never_ends_is_refused_and_not_read_to_its_end(tmp_path):
+    (tmp_path / "endless").touch()
+    os.truncate(tmp_path / "endless", 1 << 40)
+    (tmp_path / "a.gait").write_text(f'{HEAD}include "endless"\n')
+
+    (found,) = load(tmp_path / "a.gait").found
+
+    assert (found.code, found.place.line) == ("E115", 3)
+    assert "it is larger than" in found.message

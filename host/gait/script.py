@@ -6,6 +6,7 @@ script.robot_name()                            # "circular", or GaitError with a
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 from collections.abc import Callable
@@ -13,8 +14,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from host.gait.diagnostics import Diagnostic, GaitError, Problems
+from host.gait.lines import LINE_MAX, LINES_MAX
 from host.gait.parser import parse_file
 from host.gait.tree import Broken, File, Include, Place, Robot, Statement
+
+BYTES_MAX = LINES_MAX * LINE_MAX
 
 Read = Callable[[str], str]
 
@@ -69,8 +73,12 @@ def loads(text: str, name: str = "script.gait", read: Read | None = None) -> Scr
 
 
 def read_text(path: str) -> str:
-    """Return the text of a file, or raise OSError or ValueError."""
-    return Path(path).read_text(encoding="utf-8-sig")
+    """Return the text of a file, or raise OSError or ValueError; a device that never ends is too large."""
+    with Path(path).open("rb") as file:
+        data = file.read(BYTES_MAX + 1)
+    if len(data) > BYTES_MAX:
+        raise OSError(errno.EFBIG, f"it is larger than {BYTES_MAX} bytes")
+    return data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
 
 
 def walk(statements: tuple[Statement, ...]) -> list[Statement]:
