@@ -27,6 +27,7 @@ STOP_WAIT_MS = 2000
 GOODBYE_MS = 1000
 LINGER_MS = 2000  # between the end of a program and the event that says so
 PIECE = 192  # bytes of code in a message
+WORD_MAX = 0xFFFF
 ENDS = ("finished", "aborted", "tripped", "disarmed")
 
 
@@ -118,6 +119,7 @@ class Robot:
 
     def arm(self, lease_ms: int = 0) -> None:
         """Take the lease and allow orders; 0 takes the robot's own lease."""
+        self._within("arm", codes.LEASE_LIMIT, lease_ms, self.profile.session.lease_max_ms)
         self._order(messages.ARM, session=self._session.number, lease_ms=lease_ms)
 
     def disarm(self) -> None:
@@ -146,7 +148,9 @@ class Robot:
 
     def fire(self, coils: Iterable[str], duty_permille: int, hold_ms: int) -> None:
         """Heat these coils or groups, each for that long."""
-        mask = self.profile.mask(coils)
+        mask, limits = self.profile.mask(coils), self.profile.coil
+        self._within("fire", codes.DUTY_LIMIT, duty_permille, limits.duty_max_permille)
+        self._within("fire", codes.HOLD_LIMIT, hold_ms, limits.hold_max_ms)
         self._order(messages.FIRE, coils=mask, duty_permille=duty_permille, hold_ms=hold_ms)
 
     def subscribe(self, period_ms: int) -> None:
@@ -208,6 +212,11 @@ class Robot:
     def statistics(self) -> dict[str, int | None]:
         """Return what the line did so far."""
         return self._session.statistics()
+
+    def _within(self, request: str, code: int, value: int, limit: int) -> None:
+        """Refuse, as the robot would, a value that is beyond what its message can carry."""
+        if value > WORD_MAX:
+            raise Refused(request, code, value, limit)
 
     def _order(self, message: messages.Message, **values: Any) -> Status | None:
         """Give an order and wait for its answer; Refused when the robot refuses it."""

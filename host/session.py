@@ -12,7 +12,17 @@ from __future__ import annotations
 
 from typing import Any
 
-from host.errors import DictionaryMismatch, LinkLost, Mismatch, NotOurs, Refused, RobotFault, Silent, SoftrigError
+from host.errors import (
+    BadRequest,
+    DictionaryMismatch,
+    LinkLost,
+    Mismatch,
+    NotOurs,
+    Refused,
+    RobotFault,
+    Silent,
+    SoftrigError,
+)
 from host.handshake import Handshake, differing_lines, profile_text
 from host.profile import Profile, read_profile
 from host.records import Record, Status, Telemetry, event_of, status_of, stopped_of, telemetry_of
@@ -72,7 +82,11 @@ class Session:
         """Queue an order and return its number, under which `answers` will hold what the robot said."""
         if self.viewer:
             raise Refused(message.name, codes.LEASE_HELD)
-        seq: int = self._link.send(message.number, message.pack(**values), now_ms)
+        try:
+            payload = message.pack(**values)
+        except ValueError as error:
+            raise BadRequest(str(error)) from error
+        seq: int = self._link.send(message.number, payload, now_ms)
         if not self._expecting:
             self._heard_ms = now_ms
         self._asked[seq] = message.name

@@ -1,6 +1,7 @@
 """The commands, against a fake robot: what they print, and the exit status of every ending."""
 
 import json
+import re
 from types import SimpleNamespace
 
 import pytest
@@ -113,12 +114,27 @@ def test_times_are_read_as_an_operator_writes_them(softrig, peer, line, text, ho
     assert next(order for _, name, order in peer.orders if name == "fire").hold_ms == hold_ms
 
 
-@pytest.mark.parametrize("text", ["fast", "5 h", "-1s", "", "1e3", "60%"])
+@pytest.mark.parametrize("text", ["fast", "5 h", "-1s", "", "1e3", "60%", "nan", "\u0663", "9" * 400])
 def test_a_time_that_is_none_is_a_mistake_of_usage(softrig, peer, line, text):
     told = softrig("fire", "A", "--duty", "10%", "--hold", text)
 
     assert told.status == 2
     assert peer.orders == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told_as"),
+    [
+        (("fire", "A", "--duty", "10%", "--hold", "70s"), f"R05 .* 70000 ms, at most {LIMITS['hold_max_ms']}"),
+        (("fire", "A", "--duty", "99999999", "--hold", "1s"), "R04 .* 999999990 permille, at most 1000"),
+        (("arm", "--lease", "100s"), "R17 .* 100000 ms, at most 5000"),
+    ],
+)
+def test_a_value_that_no_message_can_carry_is_refused_with_the_robots_limit(softrig, line, arguments, told_as):
+    told = softrig(*arguments)
+
+    assert told.status == 4
+    assert re.search(told_as, told.err)
 
 
 def test_stop_needs_no_hello(softrig, peer, line):

@@ -39,7 +39,7 @@ def duty_permille(text: str) -> int:
 
 def _measured(text: str, factors: dict[str, int]) -> int:
     """Return a number in the smallest unit; without a unit it is in the first one."""
-    match = re.fullmatch(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*([a-z%]*)\s*", str(text))
+    match = re.fullmatch(r"\s*(\d{1,12}(?:\.\d*)?|\.\d+)\s*([a-z%]*)\s*", str(text), re.ASCII)
     if match is None or match[2] not in ("", *factors):
         raise click.BadParameter(f"{text!r}: write a number and {' or '.join(factors)}")
     return round(float(match[1]) * (factors[match[2]] if match[2] else next(iter(factors.values()))))
