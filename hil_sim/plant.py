@@ -20,7 +20,10 @@ from hil_sim.physics import body, coil
 from hil_sim.physics.coilset import coils_of, cold
 from hil_sim.physics.compiled import Array, bound, prepare
 from hil_sim.physics.contact import crossings
-from hil_sim.physics.motion import (
+from hil_sim.physics.gauge import centre, rim_energy
+from hil_sim.physics.ring import ring_of, round_pose
+from hil_sim.physics.spokes import LENGTH, LENGTH_BEFORE, PULL
+from hil_sim.physics.state import (
     APEX,
     BEND_LOSS,
     CLEARANCE,
@@ -40,7 +43,6 @@ from hil_sim.physics.motion import (
     method_of,
     motion_of,
 )
-from hil_sim.physics.ring import LENGTH, LENGTH_BEFORE, PULL, centre, rim_energy, ring_of, round_pose
 from hil_sim.robotfile import RobotFile
 
 TILT_FROM = 2.0  # [s] after the start

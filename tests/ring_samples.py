@@ -6,8 +6,10 @@ from functools import cache
 import numpy as np
 
 from hil_sim.physics.bodies import GroundNumbers, RingNumbers
-from hil_sim.physics.motion import STEP, begin, march, method_of, motion_of
-from hil_sim.physics.ring import FREE, SOFT, ring_of, round_pose
+from hil_sim.physics.motion import begin, march
+from hil_sim.physics.ring import ring_of, round_pose
+from hil_sim.physics.spokes import FREE, SOFT
+from hil_sim.physics.state import STEP, method_of, motion_of
 from hil_sim.plant import RingPlant
 from hil_sim.robotfile import load
 

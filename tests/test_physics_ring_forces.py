@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from hil_sim.physics.gauge import rim_energy
 from hil_sim.physics.motion import correct, forces
-from hil_sim.physics.ring import FREE, HARD, SOFT, SOLID, rim_energy
+from hil_sim.physics.spokes import FREE, HARD, SOFT, SOLID
 from tests.ring_samples import floating, lossless, ring
 
 RNG = np.random.default_rng(4)

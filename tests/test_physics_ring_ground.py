@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 
 from hil_sim.physics.contact import NORMAL, crossings
-from hil_sim.physics.motion import GROUND_WORK, begin, motion_of
-from hil_sim.physics.ring import FREE, SOFT, centre, rim_energy, round_pose
+from hil_sim.physics.gauge import centre, rim_energy
+from hil_sim.physics.motion import begin
+from hil_sim.physics.ring import round_pose
+from hil_sim.physics.spokes import FREE, SOFT
+from hil_sim.physics.state import GROUND_WORK, motion_of
 from tests.ring_samples import floating, ring, robot, run
 
 G = 9.81

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from hil_sim.physics.motion import BEND_LOSS, COIL_WORK, DRAG_LOSS, REJECTED, STEPS, begin
-from hil_sim.physics.ring import centre, rim_energy
+from hil_sim.physics.gauge import centre, rim_energy
+from hil_sim.physics.motion import begin
+from hil_sim.physics.state import BEND_LOSS, COIL_WORK, DRAG_LOSS, REJECTED, STEPS
 from tests.ring_samples import floating, lossless, oval, ring, run, squashed
 
 

@@ -19,8 +19,11 @@ import numpy as np
 from hil_sim.physics import coil
 from hil_sim.physics.coilset import Coils, CoilState
 from hil_sim.physics.compiled import Array, kernel
-from hil_sim.physics.motion import APEX, CLEARANCE, PEAK_T, STEP, TILT_WORK, TIME, TURN, Method, Motion, march
-from hil_sim.physics.ring import LENGTH, Ring, centre, freeze, turned
+from hil_sim.physics.gauge import centre, turned
+from hil_sim.physics.motion import march
+from hil_sim.physics.ring import Ring
+from hil_sim.physics.spokes import LENGTH, freeze
+from hil_sim.physics.state import APEX, CLEARANCE, PEAK_T, STEP, TILT_WORK, TIME, TURN, Method, Motion
 
 COIL_STEP = 1e-3  # [s]
 

@@ -10,14 +10,15 @@ depth over the first 10 um, so that forces are continuous. The hub is a disc; it
 nearer than its radius.
 
 Source: return mapping is the standard treatment of elastic-plastic friction. A stiffer k_n changes where a jump goes
-by about 3 %, and a crawl not at all: tests/test_physics_ring_ground.py. The rim does not touch itself: `crossings`
-counts, for a guard.
+by about 3 %, and a crawl hardly: tests/test_physics_ring_crawl.py. The rim against itself is in `touch`; `crossings`
+is the guard of both.
 """
 
 import numpy as np
 
 from hil_sim.physics.compiled import Array, kernel
-from hil_sim.physics.ring import DXX, DYY, Ring, couple
+from hil_sim.physics.ring import DXX, DYY, Ring
+from hil_sim.physics.spokes import couple
 
 # Rows of the array `ground`, one column per node.
 ANCHOR, TOUCH, NORMAL, FRICTION, SLIP, NORMAL_BEFORE, FRICTION_BEFORE = range(7)
@@ -75,14 +76,13 @@ def settle_anchors(ring: Ring, q0: Array, q: Array, ground: Array) -> None:
 
 
 @kernel
-def nearest(ring: Ring, q: Array, i: int) -> tuple[float, float, float, float]:
-    """Return distance, unit vector from edge i to the hub and the place along the edge (0 to 1) that is nearest [m]."""
-    n = ring.nodes
-    j = 2 * (i + 1) if i + 1 < n else 0
-    ex, ey = q[j] - q[2 * i], q[j + 1] - q[2 * i + 1]
-    hx, hy = q[2 * n] - q[2 * i], q[2 * n + 1] - q[2 * i + 1]
-    s = min(1.0, max(0.0, (hx * ex + hy * ey) / (ex * ex + ey * ey)))
-    dx, dy = hx - s * ex, hy - s * ey
+def between(q: Array, n: int, i: int, k: int) -> tuple[float, float, float, float]:
+    """Return distance, unit vector from edge k to node i (n is the hub) and the place along the edge (0 to 1) that is nearest [m]."""
+    j = 2 * (k + 1) if k + 1 < n else 0
+    ex, ey = q[j] - q[2 * k], q[j + 1] - q[2 * k + 1]
+    px, py = q[2 * i] - q[2 * k], q[2 * i + 1] - q[2 * k + 1]
+    s = min(1.0, max(0.0, (px * ex + py * ey) / (ex * ex + ey * ey)))
+    dx, dy = px - s * ex, py - s * ey
     distance = np.sqrt(dx * dx + dy * dy)
     return distance, dx / distance, dy / distance, s
 
@@ -95,7 +95,7 @@ def hub_forces(ring: Ring, q: Array, f: Array) -> bool:
     for i in range(n):
         if abs(q[2 * i] - q[2 * n]) > reach or abs(q[2 * i + 1] - q[2 * n + 1]) > reach:
             continue
-        distance, ux, uy, s = nearest(ring, q, i)
+        distance, ux, uy, s = between(q, ring.nodes, ring.nodes, i)
         if distance < ring.hub_radius:
             any_near = True
             push = ring.k_n * (ring.hub_radius - distance)
@@ -113,7 +113,7 @@ def hub_forces(ring: Ring, q: Array, f: Array) -> bool:
 def hub_tangent(ring: Ring, q: Array, blocks: Array, hub: Array) -> None:
     """Add the stiffness along the direction of each push of `hub_forces`, shared to the two nodes of the edge [N/m]."""
     for i in range(ring.nodes):
-        distance, ux, uy, s = nearest(ring, q, i)
+        distance, ux, uy, s = between(q, ring.nodes, ring.nodes, i)
         if distance < ring.hub_radius:
             j = i + 1 if i + 1 < ring.nodes else 0
             for node, share in ((i, 1.0 - s), (j, s)):

@@ -15,16 +15,13 @@ Source: Chung and Hulbert 1993 (standard result), error measure of Newmark's fam
 and repeatability: tests/test_physics_ring_motion.py.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
-from hil_sim.physics.banded import BAND, BORDER, solve
+from hil_sim.physics.banded import solve
 from hil_sim.physics.compiled import Array, kernel
 from hil_sim.physics.contact import (
     FRICTION,
     FRICTION_BEFORE,
-    GROUND_ROWS,
     NORMAL,
     NORMAL_BEFORE,
     ground_forces,
@@ -33,88 +30,32 @@ from hil_sim.physics.contact import (
     hub_tangent,
     settle_anchors,
 )
-from hil_sim.physics.ring import (
-    BLOCK_ROWS,
-    LENGTH,
-    LENGTH_BEFORE,
-    PULL,
-    PULL_BEFORE,
-    RIM_ROWS,
-    SPOKE_ROWS,
-    Ring,
-    bend_loss,
-    rim_forces,
-    rim_tangent,
-    spoke_forces,
-    spoke_tangent,
-)  # fmt: skip
-from hil_sim.physics.touch import Pairs, leaps, list_pairs, no_pairs, touch_forces, touch_tangent
+from hil_sim.physics.gauge import bend_loss
+from hil_sim.physics.ring import Ring, rim_forces, rim_tangent
+from hil_sim.physics.spokes import LENGTH, LENGTH_BEFORE, PULL, PULL_BEFORE, spoke_forces, spoke_tangent
+from hil_sim.physics.state import (
+    BEND_LOSS,
+    BEND_RATE,
+    COIL_WORK,
+    DRAG_LOSS,
+    DRAG_RATE,
+    GROUND_WORK,
+    ITERATIONS,
+    PEAK_FORCE,
+    REJECTED,
+    STEP,
+    STEPS,
+    TIME,
+    TOLERANCE,
+    Method,
+    Motion,
+)
+from hil_sim.physics.touch import leaps, list_pairs, touch_forces, touch_tangent
 
-# Entries of `tally`: time and next step [s], counts; work of coils, ground and tilting, losses [J] and their rates [W];
-TIME, STEP, STEPS, REJECTED, ITERATIONS, COIL_WORK, GROUND_WORK, TILT_WORK = range(8)
-BEND_LOSS, DRAG_LOSS, BEND_RATE, DRAG_RATE = range(8, 12)
-# greatest force [N] and temperature [degC] of a coil, height of centre of mass and of lowest point [m], rotation [rad].
-PEAK_FORCE, PEAK_T, APEX, CLEARANCE, TURN = range(12, 17)
-TALLIES = 17
-STEP_MAX = 5e-3  # [s]
-TOLERANCE = 2e-6  # [m]
 STEP_MIN = 2e-5  # [s] a shorter one is taken as it is: mass alone then makes the system definite
 RESIDUAL = 1e-9  # [N] the least that is asked of Newton's method
 ITERATIONS_MAX = 12
 CUTS_MAX = 5
-
-
-class Method(NamedTuple):
-    """Numbers of the time step: factors of (I1), tolerance of a step [m], longest step [s], share left to Newton."""
-
-    a_m: float
-    a_f: float
-    beta: float
-    gamma: float
-    tolerance: float
-    longest: float
-    share: float
-
-
-class Motion(NamedTuple):
-    """State and scratch of one body; rows of `now` and `new` are q, v, a and f over the unknowns."""
-
-    now: Array
-    new: Array
-    ground: Array
-    spokes: Array
-    tally: Array
-    rim: Array
-    blocks: Array
-    hub: Array
-    vectors: Array
-    band: Array
-    border: Array
-    corner: Array
-    pairs: Pairs
-
-
-def method_of(rho: float = 0.8, tolerance: float = TOLERANCE, longest: float = STEP_MAX, share: float = 1e-3) -> Method:
-    """Return the factors of (I1) for the damping `rho` of the highest frequency, 0 <= rho <= 1.
-
-    `share` of the tolerated error is what Newton's method may leave; 0 stands for the least that makes sense.
-    """
-    a_m, a_f = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
-    return Method(a_m, a_f, 0.25 * (1.0 - a_m + a_f) ** 2, 0.5 - a_m + a_f, tolerance, longest, share)
-
-
-def motion_of(ring: Ring, q: Array) -> Motion:
-    """Return the state of a body at rest at q, not yet touching anything."""
-    n, size = ring.nodes, 2 * ring.nodes + 3
-    now = np.zeros((4, size))
-    now[0] = q
-    tally = np.zeros(TALLIES)
-    tally[STEP] = 1e-4
-    return Motion(
-        now, np.zeros((4, size)), np.zeros((GROUND_ROWS, n)), np.zeros((SPOKE_ROWS, ring.feet.size)), tally,
-        np.zeros((RIM_ROWS, n + 2)), np.zeros((BLOCK_ROWS, n)), np.zeros((3, 3)), np.zeros((4, size)),
-        np.zeros((size, BAND)), np.zeros((size, BORDER)), np.zeros((7, BORDER)), no_pairs(),
-    )  # fmt: skip
 
 
 @kernel

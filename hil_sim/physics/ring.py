@@ -1,4 +1,4 @@
-r"""Planar elastic ring with a rigid hub on tension-only spokes: forces and exact tangents.
+r"""Planar elastic ring with a rigid hub: its constants, the forces of the rim and their exact tangent.
 
 A closed discrete elastic rod of N nodes and edges e_i from node i to i+1, counter-clockwise, node 0 at the bottom:
 
@@ -8,10 +8,7 @@ A closed discrete elastic rod of N nodes and edges e_i from node i to i+1, count
 
 with the turning angle \varphi_i from e_{i-1} to e_i. The tangent measure, not the angle itself, makes N = 32 right to
 1 % in deflection and frequency, and it forbids folding. Kelvin-Voigt damping acts on the curvature, c_i -> c_i +
-tau_v dc_i/dt. A spoke of length L between its rim node and the hub has the force of its coil (`spring`, S1) at a
-phase frozen for the step, and while taut a damping d that never makes it push; closed, the winding resists:
-
-.. math::  F = \max(0, k (L - L_0) + d \dot L)_{L > L_0} - k_s \max(0, L_s - L)                       (R2)
+tau_v dc_i/dt.
 
 Source: the energy is that of a discrete elastic rod (standard result; Bergou 2008 for the family); derivatives
 derived here and held against finite differences in tests/test_physics_ring_forces.py, which also checks the two laws
@@ -25,7 +22,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hil_sim.physics.bodies import GroundNumbers, RingNumbers
-from hil_sim.physics.coilset import Coils
 from hil_sim.physics.compiled import Array, kernel
 
 # Rows of the scratch `rim`, columns padded by one on either side so that column i + 1 belongs to node or edge i.
@@ -34,12 +30,6 @@ RIM_ROWS = 9
 # Rows of the scratch `blocks`: diagonal, first and second neighbour and hub columns of each node's two rows.
 DXX, DXY, DYY, AXX, AXY, AYX, AYY, BXX, BXY, BYX, BYY, HXX, HXY, HXP, HYX, HYY, HYP = range(17)
 BLOCK_ROWS = 17
-# Rows of the scratch `spokes`: length, force, tangent, direction, twist and arm of the attachment; the frozen coils;
-# length and force before the step.
-LENGTH, PULL, RATE, UX, UY, TWIST, ARM, SOFT, FREE, SOLID, HARD = range(11)
-LENGTH_BEFORE, PULL_BEFORE = range(11, 13)
-SPOKE_ROWS = 13
-DAMPING_RAMP = 5e-5  # [m] the damping of a spoke grows from zero over this stretch, so that the force is continuous
 
 
 class Ring(NamedTuple):
@@ -205,138 +195,3 @@ def edge_stiffness(rim: Array, e: int, EA: float) -> tuple[float, float, float]:
     kxy = along * tx * ty + turn * (ty * ty - tx * tx)
     kyy = along * ty * ty + pull - 2.0 * turn * tx * ty
     return kxx, kxy, kyy
-
-
-@kernel
-def freeze(coils: Coils, xi: Array, spokes: Array) -> None:
-    """Write stiffness, free length, solid height and stiffness below it of coils at phase xi to spokes [N/m, m]."""
-    for s in range(xi.size):
-        spokes[SOFT, s] = coils.k_A[s] + xi[s] * (coils.k_M[s] - coils.k_A[s])
-        spokes[FREE, s] = coils.L_A[s] + xi[s] * coils.dL[s]
-        spokes[SOLID, s] = coils.L_s[s]
-        spokes[HARD, s] = coils.k_s[s]
-
-
-@kernel
-def spoke_forces(ring: Ring, q: Array, v: Array, f: Array, spokes: Array) -> None:
-    """Add the force (R2) of every spoke to f; note lengths, forces and directions in spokes."""
-    hub = 2 * ring.nodes
-    cosine, sine = np.cos(q[hub + 2]), np.sin(q[hub + 2])
-    for s in range(ring.feet.size):
-        i = 2 * ring.feet[s]
-        rx = cosine * ring.arms[0, s] - sine * ring.arms[1, s]
-        ry = sine * ring.arms[0, s] + cosine * ring.arms[1, s]
-        dx, dy = q[i] - q[hub] - rx, q[i + 1] - q[hub + 1] - ry
-        length = np.sqrt(dx * dx + dy * dy)
-        ux, uy = dx / length, dy / length
-        twist = uy * rx - ux * ry
-        rate = ux * (v[i] - v[hub]) + uy * (v[i + 1] - v[hub + 1]) - twist * v[hub + 2]
-        F = k = 0.0
-        stretch, pressed = length - spokes[FREE, s], spokes[SOLID, s] - length
-        if stretch > 0.0:
-            k = spokes[SOFT, s]
-            F = max(0.0, k * stretch + ring.coil_damping * min(1.0, stretch / DAMPING_RAMP) * rate)
-        if pressed > 0.0:
-            k += spokes[HARD, s]
-            F -= spokes[HARD, s] * pressed
-        spokes[LENGTH, s] = length
-        spokes[PULL, s] = F
-        spokes[RATE, s] = k
-        spokes[UX, s] = ux
-        spokes[UY, s] = uy
-        spokes[TWIST, s] = twist
-        spokes[ARM, s] = ux * rx + uy * ry
-        f[i] += F * ux
-        f[i + 1] += F * uy
-        f[hub] -= F * ux
-        f[hub + 1] -= F * uy
-        f[hub + 2] -= F * twist
-
-
-@kernel
-def spoke_tangent(ring: Ring, spokes: Array, cv: float, blocks: Array, hub: Array) -> None:
-    """Add the derivative of `spoke_forces`, from what that noted, to blocks and to hub (3, 3) [N/m]."""
-    for s in range(ring.feet.size):
-        F, i = spokes[PULL, s], ring.feet[s]
-        if F == 0.0:
-            continue
-        ux, uy, twist, arm = spokes[UX, s], spokes[UY, s], spokes[TWIST, s], spokes[ARM, s]
-        along = spokes[RATE, s] + (cv * ring.coil_damping if F > 0.0 else 0.0)
-        across = F / spokes[LENGTH, s]
-        kxx = along * ux * ux + across * uy * uy
-        kxy = (along - across) * ux * uy
-        kyy = along * uy * uy + across * ux * ux
-        kxp = -along * twist * ux + across * arm * uy
-        kyp = -along * twist * uy - across * arm * ux
-        couple(blocks, hub, i, kxx, kxy, kyy)
-        blocks[HXP, i] += kxp
-        blocks[HYP, i] += kyp
-        hub[2, 0] -= kxp
-        hub[2, 1] -= kyp
-        hub[2, 2] += along * twist * twist + across * arm * arm + F * arm
-
-
-@kernel
-def couple(blocks: Array, hub: Array, i: int, kxx: float, kxy: float, kyy: float) -> None:
-    """Add a stiffness between node i and the centre of the hub [N/m]; the lower half of hub is enough."""
-    blocks[DXX, i] += kxx
-    blocks[DXY, i] += kxy
-    blocks[DYY, i] += kyy
-    blocks[HXX, i] -= kxx
-    blocks[HXY, i] -= kxy
-    blocks[HYX, i] -= kxy
-    blocks[HYY, i] -= kyy
-    hub[0, 0] += kxx
-    hub[1, 0] += kxy
-    hub[1, 1] += kyy
-
-
-@kernel
-def bend_loss(ring: Ring, rim: Array) -> float:
-    """Return the power lost in bending, from what `rim_forces` left in rim [W]."""
-    power = 0.0
-    for i in range(1, ring.nodes + 1):
-        dot = rim[TX, i - 1] * rim[TX, i] + rim[TY, i - 1] * rim[TY, i]
-        rate = 2.0 / (1.0 + dot) * (rim[SPIN, i] - rim[SPIN, i - 1])
-        power += rate * rate
-    return ring.EI / ring.l0 * ring.tau_v * power
-
-
-@kernel
-def turned(ring: Ring, q: Array) -> float:
-    """Return by how much the rim as a whole is turned, positive forward (clockwise), -pi < turned <= pi [rad]."""
-    n, x, y, sine, cosine = ring.nodes, 0.0, 0.0, 0.0, 0.0
-    for i in range(n):
-        x += q[2 * i] / n
-        y += q[2 * i + 1] / n
-    for i in range(n):
-        dx, dy, ax, ay = q[2 * i] - x, q[2 * i + 1] - y, ring.compass[0, i], ring.compass[1, i]
-        cosine += ax * dx + ay * dy
-        sine += ay * dx - ax * dy
-    return float(np.arctan2(sine, cosine))
-
-
-@kernel
-def centre(ring: Ring, q: Array) -> tuple[float, float]:
-    """Return the centre of mass of rim and hub [m]."""
-    mass = x = y = 0.0
-    for i in range(ring.nodes + 1):
-        mass += ring.mass[2 * i]
-        x += ring.mass[2 * i] * q[2 * i]
-        y += ring.mass[2 * i] * q[2 * i + 1]
-    return x / mass, y / mass
-
-
-@kernel
-def rim_energy(ring: Ring, q: Array) -> float:
-    """Return the elastic energy (R1) of the rim [J]."""
-    n, energy = ring.nodes, 0.0
-    px, py = q[0] - q[2 * n - 2], q[1] - q[2 * n - 1]
-    for i in range(n):
-        j = 2 * ((i + 1) % n)
-        ex, ey = q[j] - q[2 * i], q[j + 1] - q[2 * i + 1]
-        length = np.hypot(ex, ey)
-        c = 2.0 * (px * ey - py * ex) / (np.hypot(px, py) * length + px * ex + py * ey)
-        energy += 0.5 * ring.EI / ring.l0 * (c - ring.c0) ** 2 + 0.5 * ring.EA / ring.l0 * (length - ring.l0) ** 2
-        px, py = ex, ey
-    return energy
