@@ -77,7 +77,7 @@ def settle_anchors(ring: Ring, q0: Array, q: Array, ground: Array) -> None:
 
 @kernel
 def between(q: Array, n: int, i: int, k: int) -> tuple[float, float, float, float]:
-    """Return distance, unit vector from edge k to node i (n is the hub) and the place along the edge (0 to 1) that is nearest [m]."""
+    """Return distance [m], unit vector from edge k to node i (n is the hub) and the nearest place on it, 0 to 1."""
     j = 2 * (k + 1) if k + 1 < n else 0
     ex, ey = q[j] - q[2 * k], q[j + 1] - q[2 * k + 1]
     px, py = q[2 * i] - q[2 * k], q[2 * i + 1] - q[2 * k + 1]
