@@ -1,8 +1,8 @@
 """A run as pictures and reports look back on it: the robot's telemetry and events, and what an observer saw.
 
-A scene is what the address's observer (the bench; a motion-capture system) says of one instant: `snapshot()` (hub, nodes
-and coils in the plane's own axes, mm and degrees Celsius), `observe()` under "observed" (travel_mm, ...) and the host's
-clock at that time. A real robot has no observer and its recording no scenes.
+A scene is what the address's observer (the bench; a motion-capture system) says of one instant: `snapshot()` (hub,
+nodes and coils in the plane's own axes, mm and degrees Celsius), `observe()` under "observed" (travel_mm, ...) and the
+host's clock at that time. A real robot has no observer and its recording no scenes.
 
     recording = Recording(robot.profile.labels, "circular-crawl.gait on sim:circular")
     recording.note(record)                    # each Telemetry and Event
@@ -11,6 +11,7 @@ clock at that time. A real robot has no observer and its recording no scenes.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -44,9 +45,17 @@ class Recording:
     def start_ms(self) -> int:
         """Return the host's clock when the program started, else when the record begins."""
         started = [event.host_ms for event in self.events if event.event == "started"]
-        begun = [record.host_ms for record in self.telemetry] + [scene["host_ms"] for scene in self.scenes]
-        return started[0] if started else min(begun, default=0)
+        if started:
+            return started[0]
+        begun = [record.host_ms for record in self.telemetry[:1]] + [scene["host_ms"] for scene in self.scenes[:1]]
+        return min(begun, default=0)
 
     def seconds(self, host_ms: int) -> float:
         """Return the time since the start in seconds."""
         return (host_ms - self.start_ms()) / 1000
+
+    def driven(self, host_ms: int) -> tuple[str, ...]:
+        """Return the coils that were on by the telemetry of that time, or the last before it."""
+        found = bisect_right(self.telemetry, host_ms, key=lambda row: row.host_ms)
+        duties = self.telemetry[found - 1].duty_permille if found else ()
+        return tuple(label for label, duty in zip(self.labels, duties, strict=False) if duty)

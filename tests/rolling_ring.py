@@ -2,8 +2,8 @@
 
 import math
 
-from host.records import Event, Telemetry
 from host.recording import Recording
+from host.records import Event, Telemetry
 
 LABELS = tuple("ABCDEFGH")
 RADIUS_MM = 20.0

@@ -1,0 +1,73 @@
+"""The curves of a run over its time: temperatures, duties, supply current, travel."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from host.recording import Recording
+from host.view.instants import Numbers, scene_times
+from host.view.style import COILS, INK, coil_colour, coil_dash
+
+WARMED_K = 5.0  # a coil whose temperature rose by less carries no letter
+
+
+def record_times(recording: Recording) -> Numbers:
+    """Return the times of the telemetry in seconds."""
+    return np.array([recording.seconds(row.host_ms) for row in recording.telemetry])
+
+
+def draw_temperatures(axes: Axes, recording: Recording) -> None:
+    """Draw each coil's temperature: as the robot estimates it, and dotted as it is, where an observer knows it."""
+    times = record_times(recording)
+    estimates = np.array([row.temperature_degc for row in recording.telemetry])
+    for i, label in enumerate(recording.labels):
+        axes.plot(times, estimates[:, i], color=coil_colour(i), ls=coil_dash(i), lw=1.0)
+        peak = int((estimates[:, i] > estimates[:, i].max() - 1.0).argmax())
+        if estimates[peak, i] > estimates[0, i] + WARMED_K:
+            place = (times[peak], estimates[peak, i])
+            axes.annotate(
+                label, place, (0, 2), textcoords="offset points", ha="center", color=coil_colour(i), fontsize=7
+            )
+    seen = scene_times(recording)
+    for i, label in enumerate(recording.labels if recording.scenes else ()):
+        true = [scene["coils"][label]["degc"] for scene in recording.scenes]
+        axes.plot(seen, true, color=coil_colour(i), ls=":", lw=1.0)
+    styles = [Line2D([], [], color=INK, lw=1.0, label="estimated on the robot")]
+    if recording.scenes:
+        styles.append(Line2D([], [], color=INK, lw=1.0, ls=":", label="true"))
+    axes.legend(handles=styles, loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=2, frameon=False, fontsize=6.5)
+    axes.margins(y=0.15)
+    axes.set_ylabel("coil [°C]")
+
+
+def draw_duties(axes: Axes, recording: Recording) -> None:
+    """Draw one row for each coil, as high as its duty; a full row is 100 %."""
+    times = record_times(recording)
+    duties = np.array([row.duty_permille for row in recording.telemetry]) / 1000
+    count = len(recording.labels)
+    for i in range(count):
+        base = count - 1 - i
+        axes.axhline(base, color="#dddddd", lw=0.4)
+        axes.fill_between(times, base, base + 0.85 * duties[:, i], step="post", color=coil_colour(i), lw=0)
+    axes.set_yticks([count - 1 - i + 0.4 for i in range(count)], list(recording.labels))
+    axes.tick_params(axis="y", length=0)
+    axes.set_ylim(-0.1, count)
+    axes.set_ylabel("duty [row: 100 %]")
+
+
+def draw_current(axes: Axes, recording: Recording) -> None:
+    """Draw the supply current that the robot measures."""
+    current = [row.current_ma for row in recording.telemetry]
+    axes.plot(record_times(recording), current, color=INK, lw=0.9, drawstyle="steps-post")
+    axes.set_ylim(0, max([100, *current]) * 1.15)
+    axes.set_ylabel("supply [mA]")
+
+
+def draw_travel(axes: Axes, recording: Recording) -> None:
+    """Draw how far the centre of mass has come along the ground."""
+    travel = [scene["observed"]["travel_mm"] for scene in recording.scenes]
+    axes.plot(scene_times(recording), travel, color=COILS[0], lw=1.1)
+    axes.margins(y=0.12)
+    axes.set_ylabel("travel [mm]")

@@ -1,0 +1,91 @@
+"""Chooses the instants of a run that a picture shows: where the body rests, how far it came, its fastest movement."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from host.recording import Recording, Scene
+
+Numbers = NDArray[np.float64]
+GAP_MM = 25.0  # a jump is shown at least this often along its path
+
+
+def onsets(recording: Recording) -> list[float]:
+    """Return the times in seconds at which a coil begins to be driven."""
+    found = []
+    before: tuple[int, ...] = ()
+    for row in recording.telemetry:
+        if any(now and not was for now, was in zip(row.duty_permille, before or [0] * 99, strict=False)):
+            found.append(recording.seconds(row.host_ms))
+        before = row.duty_permille
+    return found
+
+
+def scene_times(recording: Recording) -> Numbers:
+    """Return the times of the scenes in seconds."""
+    return np.array([recording.seconds(scene["host_ms"]) for scene in recording.scenes])
+
+
+def path_mm(scenes: Sequence[Scene]) -> Numbers:
+    """Return how far the hub has come along its path at each scene."""
+    hubs = np.array([scene["hub"][:2] for scene in scenes], dtype=float)
+    return _added(np.hypot(*np.diff(hubs, axis=0).T))
+
+
+def movement_mm(scenes: Sequence[Scene]) -> Numbers:
+    """Return the summed movement of the rim (root mean square over its nodes) at each scene."""
+    rims = np.array([scene["nodes"] for scene in scenes], dtype=float)
+    return _added(np.sqrt((np.diff(rims, axis=0) ** 2).sum(axis=2).mean(axis=1)))
+
+
+def resting(recording: Recording) -> list[int]:
+    """Return scenes that tell the whole path: the first, each just before a coil is driven, the last, no big gap."""
+    times, path = scene_times(recording), path_mm(recording.scenes)
+    starts = [max(0, int(np.searchsorted(times, t)) - 1) for t in onsets(recording)]
+    chosen = [0]
+    for index in sorted({*starts, len(times) - 1} - {0}):
+        gap = path[index] - path[chosen[-1]]
+        between = np.linspace(path[chosen[-1]], path[index], int(gap // GAP_MM) + 2)[1:-1]
+        chosen += [int(np.searchsorted(path, mm)) for mm in between] + [index]
+    return sorted(set(chosen))
+
+
+def apart(recording: Recording, candidates: Sequence[int], distance_mm: float) -> list[int]:
+    """Return those candidates, evenly along the path, whose bodies do not overlap; at least the last."""
+    path = path_mm(recording.scenes)[list(candidates)]
+    hubs = np.array([recording.scenes[i]["hub"][:2] for i in candidates], dtype=float)
+    wanted = np.linspace(path[0], path[-1], int(path[-1] // distance_mm) + 1)
+    chosen: list[int] = []
+    for mm in wanted[::-1]:
+        near = int(np.abs(path - mm).argmin())
+        if all(np.hypot(*(hubs[near] - hubs[other])) >= distance_mm for other in chosen):
+            chosen.append(near)
+    return sorted(candidates[i] for i in chosen)
+
+
+def fastest(recording: Recording, count: int) -> list[int]:
+    """Return `count` scenes of the movement about the fastest moment, from one drive to the next.
+
+    They stand evenly in time and movement alike, so that a quick movement is not missed between two long rests.
+    """
+    times, moved = scene_times(recording), movement_mm(recording.scenes)
+    peak = times[int(np.argmax(np.diff(moved) / np.maximum(np.diff(times), 1e-6)))]
+    edges = [times[0], *onsets(recording), times[-1]]
+    begin = max(t for t in edges if t <= peak)
+    end = min([t for t in edges if t > peak], default=times[-1])
+    inside = np.flatnonzero((times >= begin - 1e-9) & (times <= end + 1e-9))
+    share = _shared(times[inside]) + _shared(moved[inside])
+    return [int(inside[np.abs(share - goal).argmin()]) for goal in np.linspace(share[0], share[-1], count)]
+
+
+def _added(steps: Numbers) -> Numbers:
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def _shared(values: Numbers) -> Numbers:
+    """Return the values from 0 to 1."""
+    share: Numbers = (values - values[0]) / max(float(values[-1] - values[0]), 1e-9)
+    return share
