@@ -36,6 +36,7 @@ def command(number: str, output: Path, robot: str | None) -> None:
     with Robot(link, keeper) as face:
         face.connect()
         keeper.name_coils(face.profile.labels)
+        keeper.recording.title = f"{SCRIPTS[number]} on {robot or f'sim:{tree.robot_name()}'}"
         compiled, _ = proven(tree, face.profile)
         ending = run(face, compiled.program, lambda stage, done: None)
     error = ending.error()
