@@ -25,7 +25,7 @@ def test_a_forgotten_field_is_named():
 
 @pytest.mark.parametrize("payload", [b"", bytes(7), bytes(9)])
 def test_a_payload_of_the_wrong_length_is_refused(payload):
-    with pytest.raises(ValueError, match="fire: .* expected 8"):
+    with pytest.raises(ValueError, match=r"fire: .* expected 8"):
         messages.FIRE.unpack(payload)
 
 
