@@ -4,7 +4,8 @@ from hil_sim.address import Address
 from hil_sim.bench import Bench, Parts
 from hil_sim.devices.ntc import Ntc
 from hil_sim.plant import RingPlant
-from hil_sim.robotfile import RobotFile, load
+from hil_sim.robotfile import RobotFile, RobotFileError, load
+from hil_sim.soundness import CameApart
 from hil_sim.worlds.image import Image
 
 
@@ -13,7 +14,10 @@ def assemble(address: Address) -> Bench:
     robot = load(address.robot, address.overrides)
     image = Image.installed(robot.profile.read_bytes())
     identity = f"{robot.name} {address.seed}"
-    return Bench(parts_of(robot), RingPlant(robot), image, baud=address.baud, identity=identity)
+    try:
+        return Bench(parts_of(robot), RingPlant(robot), image, baud=address.baud, identity=identity)
+    except (ArithmeticError, CameApart) as error:
+        raise RobotFileError(f"{robot.name} cannot be built from these numbers: {error}") from error
 
 
 def parts_of(robot: RobotFile) -> Parts:

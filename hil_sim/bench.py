@@ -21,6 +21,7 @@ from hil_sim.clock import Clock
 from hil_sim.devices.ntc import Ntc
 from hil_sim.journal import Journal
 from hil_sim.record import CoilRecord
+from hil_sim.soundness import EVERY_US, Soundness
 from hil_sim.supply import Supply
 from hil_sim.worlds.cpython import CPythonWorld, Crash
 from hil_sim.worlds.image import Image
@@ -68,7 +69,7 @@ class Parts:
 
 
 class Bench:
-    """One robot on the bench, powered on at time 0."""
+    """One robot on the bench, powered on at time 0; a body that comes apart ends it with CameApart."""
 
     def __init__(
         self,
@@ -93,6 +94,8 @@ class Bench:
         self._by_label = {coil.label: coil for coil in self.coils}
         self._advanced_us = 0
         self._hot = False
+        self._soundness = Soundness()
+        self._soundness.look(plant.snapshot(), 0.0)
         self._peak_degc = plant.temperature.copy()
         self._energy_j = np.zeros(len(self.coils))
         self.clock.at(GRID_US, self._grid)
@@ -160,6 +163,8 @@ class Bench:
         if self._hot:  # resistances have changed
             self.board.monitor.before_change()
             self.supply.solve(self.plant.resistance)
+        if self.clock.now_us % EVERY_US == 0:
+            self._soundness.look(self.plant.snapshot(), self.clock.now_us / 1e6)
         self.clock.at(self.clock.now_us + GRID_US, self._grid)
 
     def _gates_changed(self) -> None:

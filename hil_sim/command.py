@@ -46,6 +46,7 @@ def sim(
     """
     from hil_sim.link import BOOTED_US  # noqa: PLC0415
     from hil_sim.ports import PortError  # noqa: PLC0415
+    from hil_sim.soundness import CameApart  # noqa: PLC0415
 
     bench = _bench(name, seed, slope)
     try:
@@ -53,6 +54,8 @@ def sim(
         _serve(bench, name, link, tcp, speed, as_json)
     except PortError as error:
         raise NoRobot(str(error)) from error
+    except CameApart as error:
+        raise click.ClickException(str(error)) from error
     finally:
         bench.close()
 

@@ -18,7 +18,7 @@ MISTAKES = [
     ('nodes_count = [32, "assumed: ', 'nodes_count = 32  # "', "nodes_count: write it as nodes_count = [value, "),
     ('"read: standard gravity"', '"read"', "read where?"),
     ("slope_deg = [0.0,", "slope_deg = [85.0,", "ground.slope_deg is 85, it must be at least -60 and at most 60"),
-    ("wire_diameter_mm = [0.10,", "wire_diameter_mm = [nan,", "wire_diameter_mm is nan, it must be above 0"),
+    ("wire_diameter_mm = [0.10,", "wire_diameter_mm = [nan,", "wire_diameter_mm is nan, it must be at least 0.001 and"),
     ("martensite_finish_degc = [42.0,", "martensite_finish_degc = [55.0,", "the temperatures must rise"),
     ('kind = "ring"', 'kind = "wheel"', "kind 'wheel' is none of ring"),
     ('"G", "H"]', '"G", "G"]', "labels: each coil needs its own"),
@@ -104,7 +104,7 @@ def test_an_override_is_in_the_unit_of_its_key():
 def test_an_override_that_cannot_be_used_is_refused():
     assert refusal("circular", {"shell.mas_g": "6"}) == "set=shell.mas_g: no such number; did you mean shell.mass_g?"
     assert refusal("circular", {"shell.mass_g": "6g"}) == "set=shell.mass_g:6g: '6g' is not a number"
-    assert refusal("circular", {"shell.mass_g": "-6"}).endswith("shell.mass_g is -6, it must be above 0")
+    assert refusal("circular", {"shell.mass_g": "-6"}).endswith("is -6, it must be at least 0.001 and at most 100000")
 
 
 def test_every_number_keeps_its_source():
