@@ -1,6 +1,6 @@
 """Draws one scene: rim, hub, coils coloured by their temperature, and the ground, all in mm.
 
-The plane's own axes (x along the ground) are turned by the slope, so that up is up on paper.
+The plane's own axes (x along the ground) are turned by a slope, so that up is up on paper.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from host.view.style import FAINT, GROUND, INK
 Points = NDArray[np.float64]
 TURNS = 9
 COIL_WIDTH_MM = 1.5
-LETTER_MM = 2.7  # of a coil's letter from the rim
+LETTER_MM = 2.7  # of a coil's letter from the rim, where a millimetre of the body is one on paper
 EDGED = [Stroke(linewidth=1.7, foreground=INK), Normal()]
 
 
@@ -36,30 +36,36 @@ def on_paper(points: ArrayLike, slope_deg: float) -> Points:
     return turned
 
 
-def outline(scene: Scene) -> Points:
+def outline(scene: Scene, slope_deg: float) -> Points:
     """Return the closed rim on paper."""
     nodes = np.asarray(scene["nodes"], dtype=float)
-    return on_paper(np.vstack([nodes, nodes[:1]]), slope_of(scene))
+    return on_paper(np.vstack([nodes, nodes[:1]]), slope_deg)
 
 
-def draw_body(axes: Axes, scene: Scene, heat: ScalarMappable, driven: Collection[str] = (), line: float = 1.4) -> None:
-    """Draw rim, hub and coils with their letters; a driven coil has a dot where it pulls the rim."""
-    slope = slope_of(scene)
-    axes.plot(*outline(scene).T, color=INK, lw=line, solid_joinstyle="round", zorder=3)
+def draw_body(
+    axes: Axes,
+    scene: Scene,
+    slope_deg: float,
+    heat: ScalarMappable,
+    driven: Collection[str],
+    letter_mm: float = LETTER_MM,
+) -> None:
+    """Draw rim, hub and coils, their letters so far from the rim; a driven coil has a dot where it pulls the rim."""
+    axes.plot(*outline(scene, slope_deg).T, color=INK, lw=1.3, solid_joinstyle="round", zorder=3)
     for label, coil in scene["coils"].items():
-        start, end = on_paper([coil["from"], coil["to"]], slope)
+        start, end = on_paper([coil["from"], coil["to"]], slope_deg)
         colour = heat.to_rgba(coil["degc"])
         axes.plot(*spring(start, end).T, color=colour, lw=0.9, path_effects=EDGED, zorder=4)
         if label in driven:
             axes.plot(*end, "o", color=colour, ms=4.2, mec=INK, mew=0.6, zorder=6)
-        x, y = on_paper(letter_place(np.array(coil["from"]), np.array(coil["to"])), slope)[0]
+        x, y = on_paper(letter_place(np.array(coil["from"]), np.array(coil["to"]), letter_mm), slope_deg)[0]
         axes.text(x, y, label, ha="center", va="center", fontsize=6, color=INK, zorder=7)
-    axes.plot(*on_paper(scene["hub"][:2], slope)[0], "o", color="white", ms=3.2, mec=INK, mew=0.8, zorder=8)
+    axes.plot(*on_paper(scene["hub"][:2], slope_deg)[0], "o", color="white", ms=3.2, mec=INK, mew=0.8, zorder=8)
 
 
-def draw_outline(axes: Axes, scene: Scene) -> None:
+def draw_outline(axes: Axes, scene: Scene, slope_deg: float) -> None:
     """Draw the rim alone, faintly."""
-    axes.plot(*outline(scene).T, color=FAINT, lw=0.7, zorder=1)
+    axes.plot(*outline(scene, slope_deg).T, color=FAINT, lw=0.7, zorder=1)
 
 
 def draw_ground(axes: Axes, left_mm: float, right_mm: float, slope_deg: float, ticks_mm: Sequence[float]) -> None:
@@ -82,10 +88,10 @@ def spring(start: Points, end: Points) -> Points:
     return np.vstack([start, middle, end])
 
 
-def letter_place(start: Points, end: Points) -> Points:
+def letter_place(start: Points, end: Points, letter_mm: float) -> Points:
     """Return where a coil's letter stands in the plane: beyond the rim, or inside when the ground is there."""
     along = (end - start) / max(float(np.hypot(*(end - start))), 1e-9)
-    place: Points = end + LETTER_MM * along
-    if place[1] < LETTER_MM / 2:
-        place = end - 2.0 * LETTER_MM * along + LETTER_MM * np.array([-along[1], along[0]])
+    place: Points = end + letter_mm * along
+    if place[1] < letter_mm / 2:
+        place = end - 2.0 * LETTER_MM * along + letter_mm * np.array([-along[1], along[0]])
     return place

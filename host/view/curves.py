@@ -20,24 +20,17 @@ def record_times(recording: Recording) -> Numbers:
 
 def draw_temperatures(axes: Axes, recording: Recording) -> None:
     """Draw each coil's temperature: as the robot estimates it, and dotted as it is, where an observer knows it."""
-    times = record_times(recording)
+    times, seen = record_times(recording), scene_times(recording)
     estimates = np.array([row.temperature_degc for row in recording.telemetry])
     for i, label in enumerate(recording.labels):
+        true = np.array([scene["coils"][label]["degc"] for scene in recording.scenes])
         axes.plot(times, estimates[:, i], color=coil_colour(i), ls=coil_dash(i), lw=1.0)
-        peak = int((estimates[:, i] > estimates[:, i].max() - 1.0).argmax())
-        if estimates[peak, i] > estimates[0, i] + WARMED_K:
-            place = (times[peak], estimates[peak, i])
-            axes.annotate(
-                label, place, (0, 2), textcoords="offset points", ha="center", color=coil_colour(i), fontsize=7
-            )
-    seen = scene_times(recording)
-    for i, label in enumerate(recording.labels if recording.scenes else ()):
-        true = [scene["coils"][label]["degc"] for scene in recording.scenes]
         axes.plot(seen, true, color=coil_colour(i), ls=":", lw=1.0)
-    styles = [Line2D([], [], color=INK, lw=1.0, label="estimated on the robot")]
+        _write_letter(axes, label, i, times, estimates[:, i], float(max(true, default=0.0)))
     if recording.scenes:
+        styles = [Line2D([], [], color=INK, lw=1.0, label="estimated on the robot")]
         styles.append(Line2D([], [], color=INK, lw=1.0, ls=":", label="true"))
-    axes.legend(handles=styles, loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=2, frameon=False, fontsize=6.5)
+        axes.legend(handles=styles, loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=2, frameon=False, fontsize=6.5)
     axes.margins(y=0.15)
     axes.set_ylabel("coil [°C]")
 
@@ -45,12 +38,14 @@ def draw_temperatures(axes: Axes, recording: Recording) -> None:
 def draw_duties(axes: Axes, recording: Recording) -> None:
     """Draw one row for each coil, as high as its duty; a full row is 100 %."""
     times = record_times(recording)
-    duties = np.array([row.duty_permille for row in recording.telemetry]) / 1000
     count = len(recording.labels)
     for i in range(count):
         base = count - 1 - i
+        duties = np.array([row.duty_permille[i] for row in recording.telemetry]) / 1000
+        begins = np.concatenate([[0], np.flatnonzero(np.diff(duties)) + 1])
+        edges = np.concatenate([times[begins], times[-1:]])
         axes.axhline(base, color="#dddddd", lw=0.4)
-        axes.fill_between(times, base, base + 0.85 * duties[:, i], step="post", color=coil_colour(i), lw=0)
+        axes.stairs(base + 0.85 * duties[begins], edges, baseline=base, fill=True, color=coil_colour(i), lw=0)
     axes.set_yticks([count - 1 - i + 0.4 for i in range(count)], list(recording.labels))
     axes.tick_params(axis="y", length=0)
     axes.set_ylim(-0.1, count)
@@ -71,3 +66,12 @@ def draw_travel(axes: Axes, recording: Recording) -> None:
     axes.plot(scene_times(recording), travel, color=COILS[0], lw=1.1)
     axes.margins(y=0.12)
     axes.set_ylabel("travel [mm]")
+
+
+def _write_letter(axes: Axes, label: str, i: int, times: Numbers, estimate: Numbers, highest_degc: float) -> None:
+    """Write a coil's letter above its first peak, if it was warmed at all."""
+    if estimate.max() > estimate[0] + WARMED_K:
+        first = int((estimate > estimate.max() - 1.0).argmax())
+        place = (times[first], max(highest_degc, float(estimate.max())))
+        shift, colour = (0, 2), coil_colour(i)
+        axes.annotate(label, place, shift, textcoords="offset points", ha="center", color=colour, fontsize=7)

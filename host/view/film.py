@@ -2,31 +2,53 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 
 from host.recording import Recording, Scene
-from host.view.body import draw_body, draw_ground, draw_outline, on_paper, outline, slope_of
+from host.view.body import LETTER_MM, draw_body, draw_ground, draw_outline, on_paper, outline, slope_of
 from host.view.instants import apart, resting
 from host.view.style import COILS, GROUND, INK
 
+Box = tuple[float, float, float, float]  # left, right, bottom, top [mm]
 MARGIN_MM = 5.0
 QUICK_MS = 100  # frames closer than this carry their milliseconds
-HEAD_MM = 9.0  # room for letters and time above the body
+FRAME_LETTER_MM = 3.8  # frames are drawn at about half size
+HEAD_MM = 10.0  # room for letters and time above the body
 BELOW_MM = 7.0  # room for the scale below the ground
 
 
-def extent(scenes: Sequence[Scene], head_mm: float = HEAD_MM) -> tuple[float, float, float, float]:
-    """Return left, right, bottom and top on paper of these scenes with their ground, in mm."""
-    points = np.vstack([outline(scene) for scene in scenes])
-    left, right = ground_of(scenes)
-    ends = on_paper([[left, -BELOW_MM], [right, -BELOW_MM]], slope_of(scenes[0]))
-    everything = np.vstack([points, ends])
-    low, high = everything.min(axis=0), everything.max(axis=0)
-    return low[0] - 1.0, high[0] + 1.0, low[1], high[1] + head_mm
+def extent(scene: Scene, slope_deg: float, head_mm: float = HEAD_MM) -> Box:
+    """Return left, right, bottom and top on paper of a scene with its ground, in mm."""
+    left, right = ground_of([scene])
+    ends = on_paper([[left, -BELOW_MM], [right, -BELOW_MM], [left, 0.0], [right, 0.0]], slope_deg)
+    rim = outline(scene, slope_deg)
+    low, high = np.vstack([rim, ends]).min(axis=0), np.vstack([rim, ends]).max(axis=0)
+    return low[0], high[0], low[1], max(high[1], rim[:, 1].max() + head_mm)
+
+
+def together(boxes: Iterable[Box]) -> Box:
+    """Return the box around boxes."""
+    left, right, bottom, top = zip(*boxes, strict=True)
+    return min(left), max(right), min(bottom), max(top)
+
+
+def strip_slope(recording: Recording) -> float:
+    """Return the slope that the strip is drawn at: a plane that is tilted under the robot is drawn as it ended."""
+    return slope_of(recording.scenes[-1])
+
+
+def strip_extent(recording: Recording) -> Box:
+    """Return the room of the strip."""
+    return together(extent(recording.scenes[i], strip_slope(recording)) for i in resting(recording))
+
+
+def frames_extent(recording: Recording, indexes: Iterable[int]) -> Box:
+    """Return the room of each of the frames, which all show the same piece of ground."""
+    return together(extent(scene, slope_of(scene)) for scene in (recording.scenes[i] for i in indexes))
 
 
 def ground_of(scenes: Sequence[Scene]) -> tuple[float, float]:
@@ -37,22 +59,20 @@ def ground_of(scenes: Sequence[Scene]) -> tuple[float, float]:
 
 def draw_strip(axes: Axes, recording: Recording, heat: ScalarMappable) -> None:
     """Draw the body where it was: whole where there is room, else its outline; and the path of its hub."""
-    scenes = recording.scenes
+    scenes, slope = recording.scenes, strip_slope(recording)
     shown = resting(recording)
     whole = apart(recording, shown, _width(scenes[0]) * 1.08)
     for index in set(shown) - set(whole):
-        draw_outline(axes, scenes[index])
+        draw_outline(axes, scenes[index], slope)
     for index in whole:
-        draw_body(axes, scenes[index], heat, recording.driven(scenes[index]["host_ms"]))
-        write_time(axes, scenes[index], recording)
-    slope = slope_of(scenes[0])
-    hubs = on_paper([scene["hub"][:2] for scene in scenes], slope)
-    axes.plot(*hubs.T, color=COILS[0], lw=0.8, zorder=5)
+        draw_body(axes, scenes[index], slope, heat, recording.driven(scenes[index]["host_ms"]))
+        write_time(axes, scenes[index], slope, recording, LETTER_MM)
+    axes.plot(*on_paper([scene["hub"][:2] for scene in scenes], slope).T, color=COILS[0], lw=0.8, zorder=5)
     left, right = ground_of([scenes[index] for index in shown])
-    draw_ground(axes, left, right, slope, scale(left, right - 4.0, 10))
+    draw_ground(axes, left, right, slope, scale(left, right - 6.0, 10))
     x, y = on_paper([[right, -2.0]], slope)[0]
     axes.text(x, y, "mm", ha="right", va="top", fontsize=6, color=GROUND, rotation=slope)
-    frame(axes, [scenes[index] for index in shown])
+    frame(axes, strip_extent(recording))
 
 
 def draw_frames(axes: Sequence[Axes], recording: Recording, indexes: Sequence[int], heat: ScalarMappable) -> None:
@@ -61,10 +81,11 @@ def draw_frames(axes: Sequence[Axes], recording: Recording, indexes: Sequence[in
     left, right = ground_of(chosen)
     quick = (chosen[-1]["host_ms"] - chosen[0]["host_ms"]) / len(chosen) < QUICK_MS
     for each, scene in zip(axes, chosen, strict=True):
-        draw_body(each, scene, heat, recording.driven(scene["host_ms"]), line=1.2)
-        write_time(each, scene, recording, 3 if quick else 1)
-        draw_ground(each, left, right, slope_of(scene), scale(left, right, 20))
-        frame(each, chosen)
+        slope = slope_of(scene)
+        draw_body(each, scene, slope, heat, recording.driven(scene["host_ms"]), FRAME_LETTER_MM)
+        write_time(each, scene, slope, recording, FRAME_LETTER_MM, 3 if quick else 1)
+        draw_ground(each, left, right, slope, scale(left, right, 20))
+        frame(each, frames_extent(recording, indexes))
 
 
 def scale(left_mm: float, right_mm: float, step_mm: int) -> list[float]:
@@ -73,18 +94,19 @@ def scale(left_mm: float, right_mm: float, step_mm: int) -> list[float]:
     return ticks
 
 
-def write_time(axes: Axes, scene: Scene, recording: Recording, decimals: int = 1) -> None:
-    """Write the scene's time above its body."""
-    points = outline(scene)
-    x = float(points[:, 0].min() + points[:, 0].max()) / 2
+def write_time(
+    axes: Axes, scene: Scene, slope_deg: float, recording: Recording, letter_mm: float, decimals: int = 1
+) -> None:
+    """Write the scene's time above its body and letters."""
+    points = outline(scene, slope_deg)
+    x, y = float(points[:, 0].min() + points[:, 0].max()) / 2, float(points[:, 1].max()) + 1.8 * letter_mm
     time = f"{max(0.0, recording.seconds(scene['host_ms'])):.{decimals}f}"
-    axes.text(x, float(points[:, 1].max()) + 4.8, f"{time} s", ha="center", va="bottom", fontsize=6.5, color=INK)
+    axes.text(x, y, f"{time} s", ha="center", va="bottom", fontsize=6.5, color=INK)
 
 
-def frame(axes: Axes, scenes: Sequence[Scene]) -> None:
-    """Show just these scenes, without the box, one millimetre the same both ways."""
-    left, right, bottom, top = extent(scenes)
-    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+def frame(axes: Axes, box: Box) -> None:
+    """Show just this box, without its lines, one millimetre the same both ways."""
+    axes.set(xlim=box[:2], ylim=box[2:], aspect="equal")
     axes.set_axis_off()
 
 

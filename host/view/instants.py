@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from host.recording import Recording, Scene
 
 Numbers = NDArray[np.float64]
-GAP_MM = 25.0  # a jump is shown at least this often along its path
+GAP_MM = 40.0  # a jump is shown at least this often along its path
 
 
 def onsets(recording: Recording) -> list[float]:
@@ -54,15 +54,15 @@ def resting(recording: Recording) -> list[int]:
 
 
 def apart(recording: Recording, candidates: Sequence[int], distance_mm: float) -> list[int]:
-    """Return those candidates, evenly along the path, whose bodies do not overlap; at least the last."""
-    path = path_mm(recording.scenes)[list(candidates)]
+    """Return candidates whose hubs are at least that far apart: the first, the last, and what fits best between."""
     hubs = np.array([recording.scenes[i]["hub"][:2] for i in candidates], dtype=float)
-    wanted = np.linspace(path[0], path[-1], int(path[-1] // distance_mm) + 1)
-    chosen: list[int] = []
-    for mm in wanted[::-1]:
-        near = int(np.abs(path - mm).argmin())
-        if all(np.hypot(*(hubs[near] - hubs[other])) >= distance_mm for other in chosen):
-            chosen.append(near)
+    chosen = [0]
+    nearest = np.hypot(*(hubs - hubs[0]).T)
+    following = len(hubs) - 1
+    while nearest[following] >= distance_mm:
+        chosen.append(following)
+        nearest = np.minimum(nearest, np.hypot(*(hubs - hubs[following]).T))
+        following = int(nearest.argmax())
     return sorted(candidates[i] for i in chosen)
 
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from host.errors import BadRequest
 from host.recording import Recording, Scene
 from host.view.body import draw_body, draw_ground, slope_of
-from host.view.film import extent, ground_of, scale
+from host.view.film import extent, ground_of, scale, together
 from host.view.style import PAGE_MM, heat_scale, page
 
 TITLE_MM, BAR_MM, CAPTION_MM, EDGE_MM = 7.0, 16.0, 5.0, 3.0
@@ -23,9 +23,9 @@ def poses_figure(recording: Recording, coils: Sequence[str]) -> Figure:
     """Return one panel at rest and one for each coil, all at one scale; BadRequest when a coil never pulled."""
     scenes = [recording.scenes[0], *(shortest(recording, label) for label in coils)]
     captions = ["at rest", *(f"coil {label}" for label in coils)]
-    boxes = [extent([scene], LETTERS_MM) for scene in scenes]
+    boxes = [extent(scene, slope_of(scene), LETTERS_MM) for scene in scenes]
     wide_mm = max(box[1] - box[0] for box in boxes)
-    low_mm, high_mm = min(box[2] for box in boxes), max(box[3] for box in boxes)
+    _, _, low_mm, high_mm = together(boxes)
     each_mm = (PAGE_MM - BAR_MM - EDGE_MM) / len(scenes)
     panel_mm = each_mm * (high_mm - low_mm) / wide_mm
     total_mm = TITLE_MM + panel_mm + CAPTION_MM
@@ -41,6 +41,7 @@ def poses_figure(recording: Recording, coils: Sequence[str]) -> Figure:
         figure.text(left + each_mm / 2 / PAGE_MM, 1.5 / total_mm, caption, ha="center", fontsize=7.5)
     bar_at = (1 - (BAR_MM - 4.0) / PAGE_MM, (CAPTION_MM + 4.0) / total_mm, 2.2 / PAGE_MM, (panel_mm - 10.0) / total_mm)
     _draw_bar(figure.add_axes(bar_at), figure, heat)
+    figure.text(1 - EDGE_MM / PAGE_MM, 1.5 / total_mm, "scale in mm", ha="right", fontsize=6.5)
     return figure
 
 
@@ -59,9 +60,9 @@ def coil_length_mm(scene: Scene, label: str) -> float:
 
 
 def _draw_pose(axes: Axes, scene: Scene, driven: Sequence[str], heat: ScalarMappable) -> None:
-    draw_body(axes, scene, heat, driven, line=1.2)
+    draw_body(axes, scene, slope_of(scene), heat, driven)
     left, right = ground_of([scene])
-    draw_ground(axes, left, right, slope_of(scene), scale(left, right, 10))
+    draw_ground(axes, left, right, slope_of(scene), scale(left, right, 20))
     axes.set_axis_off()
 
 

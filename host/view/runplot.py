@@ -15,8 +15,9 @@ from matplotlib.ticker import MaxNLocator
 from host.errors import BadRequest
 from host.recording import Recording
 from host.view import curves
-from host.view.film import draw_frames, draw_strip, extent
-from host.view.instants import fastest, resting, scene_times
+from host.view.body import slope_of
+from host.view.film import draw_frames, draw_strip, frames_extent, strip_extent, strip_slope
+from host.view.instants import fastest, scene_times
 from host.view.style import FAINT, PAGE_MM, heat_scale, page
 
 LEFT_MM, RIGHT_MM, TOP_MM, BOTTOM_MM = 14.0, 3.0, 9.0, 9.0
@@ -71,8 +72,7 @@ class _Sheet:
 
 def _film_heights(recording: Recording) -> tuple[float, float]:
     """Return the heights of the strip and of the frames, which follow from their widths."""
-    strip = extent([recording.scenes[i] for i in resting(recording)])
-    frames = extent([recording.scenes[i] for i in fastest(recording, FRAMES)])
+    strip, frames = strip_extent(recording), frames_extent(recording, fastest(recording, FRAMES))
     wide = PAGE_MM - LEFT_MM - RIGHT_MM - BAR_MM
     strip_mm = wide * (strip[3] - strip[2]) / (strip[1] - strip[0])
     frames_mm = (PAGE_MM - LEFT_MM - RIGHT_MM) / FRAMES * (frames[3] - frames[2]) / (frames[1] - frames[0])
@@ -83,7 +83,7 @@ def _draw_film(sheet: _Sheet, recording: Recording, heights_mm: tuple[float, flo
     hottest = max(coil["degc"] for scene in recording.scenes for coil in scene["coils"].values())
     heat = heat_scale(hottest)
     strip_mm = heights_mm[0] - GAP_MM
-    sheet.name("a", "the body along the ground; blue: the path of its hub")
+    sheet.name("a", f"the body along the ground{_slope(recording)}, scale in mm; blue: the path of its hub")
     wide = PAGE_MM - LEFT_MM - RIGHT_MM - BAR_MM
     draw_strip(sheet.axes(LEFT_MM, wide, strip_mm), recording, heat)
     _draw_bar(sheet, heat, strip_mm)
@@ -95,6 +95,16 @@ def _draw_film(sheet: _Sheet, recording: Recording, heights_mm: tuple[float, flo
     sheet.y_mm -= heights_mm[1]
 
 
+def _slope(recording: Recording) -> str:
+    """Return what is to be said of the slope; a bench may tilt its plane only once the robot has taken hold."""
+    slope = strip_slope(recording)
+    if not slope:
+        return ""
+    level = [scene["host_ms"] for scene in recording.scenes if slope_of(scene) != slope]
+    since = f" from {recording.seconds(level[-1]):.1f} s on" if level else ""
+    return f" (slope {slope:.3g}°{since})"
+
+
 def _draw_bar(sheet: _Sheet, heat: ScalarMappable, height_mm: float) -> None:
     box = sheet.axes(PAGE_MM - RIGHT_MM - BAR_MM + 4.0, 2.2, min(height_mm - 4.0, 34.0))
     bar = sheet.figure.colorbar(heat, cax=box)
@@ -104,7 +114,7 @@ def _draw_bar(sheet: _Sheet, heat: ScalarMappable, height_mm: float) -> None:
 
 def _draw_curves(sheet: _Sheet, recording: Recording, panels: list[Panel]) -> None:
     if len(recording.scenes) > 1:
-        sheet.name("c", "what the robot measured (solid) and what was true (dotted)")
+        sheet.name("c", "what the robot measured, and what was true")
     first: Axes | None = None
     for draw, height_mm in panels:
         axes = sheet.axes(LEFT_MM, PAGE_MM - LEFT_MM - RIGHT_MM, height_mm, first)
