@@ -12,6 +12,8 @@ from __future__ import annotations
 
 import json
 from base64 import b64encode
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
@@ -63,24 +65,29 @@ TOPICS: dict[str, dict[str, Any]] = {
 
 
 class LogWriter:
-    """Writes one log; BadRequest when the file cannot be made. `labels` name the coils once the robot is known."""
+    """Writes one log; BadRequest, once, when the file cannot be made or the disk is full.
+
+    `labels` name the coils once the robot is known.
+    """
 
     def __init__(self, path: str | Path) -> None:
         self.labels: tuple[str, ...] = ()
-        try:
+        self._path = path
+        self._broken = False
+        with self._writing():
             self._file = open(path, "wb")  # noqa: SIM115  # closed by close()
-        except OSError as error:
-            raise BadRequest(f"cannot write the log {path}: {error.strerror}") from error
         self._writer = Writer(self._file, chunk_size=CHUNK_BYTES)
-        self._writer.start(library="softrig")
-        self._channels = {topic: self._channel(topic, fields) for topic, fields in TOPICS.items()}
+        with self._writing():
+            self._writer.start(library="softrig")
+            self._channels = {topic: self._channel(topic, fields) for topic, fields in TOPICS.items()}
         self._chunk_ms: int | None = None
 
     def __enter__(self) -> LogWriter:
         return self
 
-    def __exit__(self, *_: object) -> None:
-        self.close()
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        with suppress(BadRequest) if kind else nullcontext():  # what went wrong first is what is told
+            self.close()
 
     def line(self, direction: str, data: bytes, host_ms: int, robot_ms: int | None) -> None:
         """Keep bytes that went "out" or came "in"."""
@@ -108,14 +115,33 @@ class LogWriter:
 
     def attach(self, name: str, data: bytes, media_type: str = "text/plain") -> None:
         """Attach a file: the script, the dictionary, the versions, the report."""
-        self._writer.add_attachment(create_time=0, log_time=0, name=name, media_type=media_type, data=data)
-        self._file.flush()
+        if self._broken:
+            return
+        with self._writing():
+            self._writer.add_attachment(create_time=0, log_time=0, name=name, media_type=media_type, data=data)
+            self._file.flush()
 
     def close(self) -> None:
         """End the file; closing twice does nothing."""
-        if not self._file.closed:
-            self._writer.finish()  # type: ignore[no-untyped-call]
-            self._file.close()
+        if self._file.closed:
+            return
+        try:
+            if not self._broken:
+                with self._writing():
+                    self._writer.finish()  # type: ignore[no-untyped-call]
+                    self._file.flush()
+        finally:
+            with suppress(OSError):
+                self._file.close()
+
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
+        """Say that the log cannot be written, and write no more: the robot must still be left with every coil off."""
+        try:
+            yield
+        except OSError as error:
+            self._broken = True
+            raise BadRequest(f"cannot write the log {self._path}: {error.strerror}") from error
 
     def _channel(self, topic: str, properties: dict[str, Any]) -> int:
         schema = {"type": "object", "title": f"softrig.{topic}", "properties": properties}
@@ -123,14 +149,20 @@ class LogWriter:
         return int(self._writer.register_channel(topic, "json", number))
 
     def _add(self, topic: str, host_ms: int, row: dict[str, Any]) -> None:
+        if self._broken:
+            return
         time_ns = host_ms * NS_PER_MS
         data = json.dumps(row, separators=(",", ":")).encode()
-        self._writer.add_message(self._channels[topic], log_time=time_ns, data=data, publish_time=time_ns)
+        with self._writing():
+            self._writer.add_message(self._channels[topic], log_time=time_ns, data=data, publish_time=time_ns)
         if self._chunk_ms is None:
             self._chunk_ms = host_ms
         elif host_ms - self._chunk_ms >= CHUNK_MS:
             self._flush(host_ms)
 
     def _flush(self, host_ms: int) -> None:
-        self._writer.flush()  # type: ignore[no-untyped-call]
+        if self._broken:
+            return
+        with self._writing():
+            self._writer.flush()  # type: ignore[no-untyped-call]
         self._chunk_ms = host_ms

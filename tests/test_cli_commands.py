@@ -1,6 +1,7 @@
 """The commands, against a fake robot: what they print, and the exit status of every ending."""
 
 import json
+import os
 import re
 from types import SimpleNamespace
 
@@ -332,3 +333,27 @@ def test_a_script_that_is_not_there_is_said_so(softrig):
 
     assert told.status == 2
     assert "no-such.gait" in told.err
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a full disk")
+def test_a_disk_that_fills_during_a_run_ends_in_one_line_with_every_coil_off(
+    softrig, peer, line, tmp_path, monkeypatch
+):
+    monkeypatch.setattr("host.log.LogWriter.attach", lambda *_: None)  # what fills first is a chunk of the run
+    script = tmp_path / "long.gait"
+    script.write_text(SCRIPT + "wait 60 s\n")
+    peer.program_ms = 60_000
+
+    told = softrig("run", str(script), "--log", "/dev/full")
+
+    assert told.status == 2
+    assert told.err == "softrig: cannot write the log /dev/full: No space left on device\n"
+    assert names(peer)[-2:] == ["start", "disarm"]
+
+
+@pytest.mark.skipif(not os.path.isdir("/proc"), reason="needs a folder where nothing can be made")
+def test_a_picture_that_cannot_be_written_is_said_in_one_line(softrig, line, script):
+    told = softrig("run", script, "--plot", "/proc/x.svg")
+
+    assert told.status == 2
+    assert told.err == "softrig: cannot write /proc/x.svg: No such file or directory\n"

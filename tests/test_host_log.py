@@ -166,3 +166,23 @@ def test_info_counts_rows_events_and_attachments(path):
     assert info["events"] == {"started": 1}
     assert list(info["attachments"]) == ["versions.json"]
     assert info["duration_s"] == pytest.approx(9.952)
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a full disk")
+def test_a_full_disk_is_told_once_and_the_rest_goes_on_without_a_log():
+    log = LogWriter("/dev/full")
+    with pytest.raises(BadRequest, match="cannot write the log /dev/full: No space left on device"):
+        log.attach("a", b"b")
+
+    log.record(telemetry(0))
+    log.line("out", b"\x01", 0, None)
+    log.attach("a", b"b")
+    log.close()
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a full disk")
+def test_a_full_disk_does_not_hide_what_ended_the_run():
+    log = LogWriter("/dev/full")
+    log.line("out", b"\x01", 0, None)
+
+    log.__exit__(KeyError, KeyError("first"), None)  # the writing of the end fails and is not raised

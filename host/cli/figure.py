@@ -8,7 +8,7 @@ import click
 
 import host
 from host.cli.options import robot_option
-from host.cli.output import note
+from host.cli.output import note, writing
 from host.cli.scripts import proven
 from host.errors import BadRequest
 from host.gait.script import load
@@ -42,7 +42,8 @@ def command(number: str, output: Path, robot: str | None) -> None:
     error = ending.error()
     if error:
         raise error
-    draw_poses(keeper.recording, output)
+    with writing(output):
+        draw_poses(keeper.recording, output)
     note(f"picture: {output}")
 
 

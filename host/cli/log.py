@@ -10,8 +10,7 @@ from typing import Any
 import click
 
 from host.cli.options import json_option
-from host.cli.output import emit, note
-from host.errors import BadRequest
+from host.cli.output import emit, note, writing
 from host.logbook import read_log
 from host.view import draw_run
 
@@ -40,11 +39,8 @@ def export(file: Path, topic: str, output: Path | None) -> None:
     if output is None:
         log.write_csv(sys.stdout, topic)
         return
-    try:
-        with output.open("w", encoding="utf-8", newline="") as table:
-            rows = log.write_csv(table, topic)
-    except OSError as error:
-        raise BadRequest(f"cannot write {output}: {error.strerror}") from error
+    with writing(output), output.open("w", encoding="utf-8", newline="") as table:
+        rows = log.write_csv(table, topic)
     note(f"{rows} rows: {output}")
 
 
@@ -53,7 +49,9 @@ def export(file: Path, topic: str, output: Path | None) -> None:
 @click.option("-o", "--output", type=click.Path(path_type=Path), required=True, metavar="FILE.svg")
 def plot(file: Path, output: Path) -> None:
     """Draw the run that a log holds."""
-    draw_run(read_log(file).recording(), output)
+    recording = read_log(file).recording()
+    with writing(output):
+        draw_run(recording, output)
     note(f"picture: {output}")
 
 

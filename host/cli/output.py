@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import click
 
-from host.errors import SoftrigError
+from host.errors import BadRequest, SoftrigError
 
 
 def emit(as_json: bool, fields: Any, lines: Iterable[str]) -> None:
@@ -23,6 +25,15 @@ def emit(as_json: bool, fields: Any, lines: Iterable[str]) -> None:
 def note(text: str) -> None:
     """Print a line for the reader that is no result."""
     click.echo(text, err=True)
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Say in one line that a file cannot be written."""
+    try:
+        yield
+    except OSError as error:
+        raise BadRequest(f"cannot write {path}: {error.strerror}") from error
 
 
 def json_line(fields: Any) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 import click
 
 from host.cli.options import json_option, robot_option
-from host.cli.output import emit, json_line, note
+from host.cli.output import emit, json_line, note, writing
 from host.cli.progress import shown
 from host.cli.scripts import proven
 from host.gait.compiler import Compiled
@@ -64,7 +64,8 @@ def command(
             log.attach("report.json", json_line(fields).encode(), "application/json")
     emit(as_json, fields, lines(fields))
     if plot_path and keeper.recording.telemetry:
-        draw_run(keeper.recording, plot_path)
+        with writing(plot_path):
+            draw_run(keeper.recording, plot_path)
         note(f"picture: {plot_path}")
     error = ending.error() if ending else None
     if error:
