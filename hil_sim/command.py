@@ -6,6 +6,7 @@ import json
 import signal
 from collections.abc import Callable
 from contextlib import ExitStack
+from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,11 +23,22 @@ class NoRobot(click.ClickException):
     exit_code = 3
 
 
+class Speed(click.FloatRange):
+    """A number within a range; "nan" is no number."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Return the number, or fail."""
+        number = float(super().convert(value, param, ctx))
+        if isnan(number):
+            self.fail(f"{value!r} is not a number", param, ctx)
+        return number
+
+
 @click.command()
 @click.argument("name")
 @click.option("--link", type=click.Path(path_type=Path), help="Keep a symbolic link to the port at this path.")
 @click.option("--tcp", type=click.IntRange(0, 65_535), help="Listen on 127.0.0.1 too; 0 takes any free port.")
-@click.option("--speed", type=click.FloatRange(0.01, 100), default=1.0, help="Virtual seconds in one real second.")
+@click.option("--speed", type=Speed(0.01, 100), default=1.0, help="Virtual seconds in one real second.")
 @click.option("--seed", type=click.IntRange(0, 2**32 - 1), help="Identity of the run.")
 @click.option("--slope", type=float, help="Slope of the ground in degrees, uphill positive.")
 @click.option("--json", "as_json", is_flag=True, help="One JSON object per line.")

@@ -93,8 +93,14 @@ class Pty:
         os.set_blocking(self._near, False)
         self.path = os.ttyname(self._far)
         self.link = link
-        if link is not None:
+        if link is None:
+            return
+        try:
             _place_link(link, self.path)
+        except OSError as error:
+            self.link = None
+            self.close()
+            raise PortError(f"link {link}: {error.strerror}") from error
 
     def handles(self) -> list[int]:
         """Return the near end."""

@@ -23,6 +23,8 @@ def test_robots_lists_the_address_of_each():
         (["circular?slop=1"], 2, "no option 'slop'"),
         (["circular", "--slope", "61"], 2, "ground.slope_deg"),
         (["circular", "--speed", "0"], 2, "--speed"),
+        (["circular", "--speed", "nan"], 2, "'nan' is not a number"),
+        (["circular", "--link", "/proc/robot"], 3, "link /proc/robot: No such file or directory"),
         (["./none.toml"], 3, "no such robot file"),
     ],
 )
