@@ -10,6 +10,7 @@ from firmware.channels import Refused
 from protocol import codes, frames, messages, program
 
 PAGE = 200  # bytes of dictionary text in an answer
+FIGURE_MAX = 0x7FFFFFFF  # that an answer can carry: what a host sent may be greater
 
 
 class Commands:
@@ -39,7 +40,7 @@ class Commands:
         except Refused as refused:
             self._answer(
                 messages.REFUSED, request=received.seq, code=refused.code, channel=refused.channel,
-                value=refused.value, limit=refused.limit,
+                value=min(refused.value, FIGURE_MAX), limit=min(refused.limit, FIGURE_MAX),
             )  # fmt: skip
             return
         if not answered:
@@ -186,7 +187,10 @@ class Commands:
             raise Refused(codes.BUSY)
 
     def _answer(self, message, **fields) -> None:
-        self._core.link.send(message.number, message.pack(**fields), self._core.now_ms)
+        """Send an answer; a host that acknowledges nothing goes without."""
+        link = self._core.link
+        if link.room():
+            link.send(message.number, message.pack(**fields), self._core.now_ms)
 
     def _nak(self, kind: int, code: int) -> None:
         payload = messages.NAK.pack(kind=kind, code=code, version=frames.VERSION)

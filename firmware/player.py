@@ -110,6 +110,10 @@ class Player:
         return self._go_on()
 
     def _guard(self, now_ms: int) -> int:
+        """Keep a guard, once: it may stand in a loop."""
+        for i in range(self._guard_count):
+            if self._guards[i] == self._at + 1:
+                return self._go_on()
         self._guards[self._guard_count] = self._at + 1
         self._guard_count += 1
         return self._go_on()

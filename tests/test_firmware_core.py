@@ -4,7 +4,7 @@ import pytest
 
 from firmware.core import Core
 from protocol import codes, messages, program
-from protocol.frames import STOP
+from protocol.frames import RELIABLE, STOP, encode, seal
 from protocol.program import Condition
 from tests.firmware_bench import Rig, Table, refusal
 
@@ -393,3 +393,34 @@ def test_a_coil_is_not_charged_for_the_time_before_it_was_switched_on(rig):
 
     full_uw = 2_000_000 // 10_020 * (2_000_000 // 10_020) * 9500 // 1000
     assert rig.core.sense.heat_uj[7] == pytest.approx(full_uw * 100 // 1000, rel=0.05)
+
+
+def test_a_figure_greater_than_an_answer_can_carry_is_refused_all_the_same(rig):
+    rig.arm()
+
+    said = refusal(rig.fire(0xFFFFFFFF))
+
+    assert (said.code, said.value) == (codes.UNKNOWN_CHANNEL, 0x7FFFFFFF)
+
+
+def test_a_host_that_acknowledges_nothing_goes_without_answers(rig):
+    rig.arm()
+
+    for number in range(200):
+        body = seal(messages.FIRE.number, (number + 1) & 255, 0, b"", rig.host.decoder.seed, RELIABLE)
+        rig.core.step(rig.now_ms, encode(body))
+        rig.now_ms += 5
+
+    assert rig.core.state == messages.ARMED
+    rig.run(5, line=STOP)
+    assert rig.core.code == codes.STOP
+
+
+def test_a_guard_within_a_loop_is_one_guard(rig):
+    guard = Condition(program.TEMPERATURE, program.ANY, program.ABOVE, 500, 0xFF)
+    body = program.guard(guard) + program.delay(10)
+
+    run_program(rig, program.repeat(20) + body + program.next_() + program.fire(2, 1000, 2000) + program.halt())
+    rig.run(1500)
+
+    assert rig.core.code == codes.GUARD
