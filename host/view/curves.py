@@ -10,6 +10,7 @@ from host.recording import Recording
 from host.view.instants import Numbers, scene_times
 from host.view.style import COILS, INK, coil_colour, coil_dash
 
+FAR_MM = 2000.0
 WARMED_K = 5.0  # a coil whose temperature rose by less carries no letter
 
 
@@ -61,11 +62,12 @@ def draw_current(axes: Axes, recording: Recording) -> None:
 
 
 def draw_travel(axes: Axes, recording: Recording) -> None:
-    """Draw how far the centre of mass has come along the ground."""
-    travel = [scene["observed"]["travel_mm"] for scene in recording.scenes]
-    axes.plot(scene_times(recording), travel, color=COILS[0], lw=1.1)
+    """Draw how far the centre of mass has come along the ground; in metres when it ran away."""
+    travel = np.array([scene["observed"]["travel_mm"] for scene in recording.scenes])
+    far = float(np.abs(travel).max()) >= FAR_MM
+    axes.plot(scene_times(recording), travel / 1000 if far else travel, color=COILS[0], lw=1.1)
     axes.margins(y=0.12)
-    axes.set_ylabel("travel [mm]")
+    axes.set_ylabel("travel [m]" if far else "travel [mm]")
 
 
 def _write_letter(axes: Axes, label: str, i: int, times: Numbers, estimate: Numbers, highest_degc: float) -> None:

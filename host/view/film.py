@@ -14,9 +14,12 @@ from host.view.instants import apart, resting
 from host.view.style import COILS, GROUND, INK
 
 Box = tuple[float, float, float, float]  # left, right, bottom, top [mm]
+EDGE_MM = 1.5  # so that no line is cut at the edge
 MARGIN_MM = 5.0
+LETTERS_TO_SCALE_MM = 170.0  # a longer strip is drawn smaller, and its letters stand farther off
 QUICK_MS = 100  # frames closer than this carry their milliseconds
 FRAME_LETTER_MM = 3.8  # frames are drawn at about half size
+COMMON_MM = 100.0  # frames show the same ground when all of it is no wider
 HEAD_MM = 10.0  # room for letters and time above the body
 BELOW_MM = 7.0  # room for the scale below the ground
 
@@ -27,7 +30,7 @@ def extent(scene: Scene, slope_deg: float, head_mm: float = HEAD_MM) -> Box:
     ends = on_paper([[left, -BELOW_MM], [right, -BELOW_MM], [left, 0.0], [right, 0.0]], slope_deg)
     rim = outline(scene, slope_deg)
     low, high = np.vstack([rim, ends]).min(axis=0), np.vstack([rim, ends]).max(axis=0)
-    return low[0], high[0], low[1], max(high[1], rim[:, 1].max() + head_mm)
+    return low[0] - EDGE_MM, high[0] + EDGE_MM, low[1], max(high[1], rim[:, 1].max() + head_mm)
 
 
 def together(boxes: Iterable[Box]) -> Box:
@@ -46,9 +49,15 @@ def strip_extent(recording: Recording) -> Box:
     return together(extent(recording.scenes[i], strip_slope(recording)) for i in resting(recording))
 
 
-def frames_extent(recording: Recording, indexes: Iterable[int]) -> Box:
-    """Return the room of each of the frames, which all show the same piece of ground."""
-    return together(extent(scene, slope_of(scene)) for scene in (recording.scenes[i] for i in indexes))
+def frame_boxes(recording: Recording, indexes: Iterable[int]) -> list[Box]:
+    """Return the room of each frame, all of one size: of the same piece of ground unless the body went far."""
+    boxes = [extent(scene, slope_of(scene)) for scene in (recording.scenes[i] for i in indexes)]
+    left, right, bottom, top = together(boxes)
+    if right - left <= COMMON_MM:
+        return [(left, right, bottom, top)] * len(boxes)
+    wide, high = max(box[1] - box[0] for box in boxes), max(box[3] - box[2] for box in boxes)
+    middles = [((box[0] + box[1]) / 2, box[2]) for box in boxes]
+    return [(x - wide / 2, x + wide / 2, y, y + high) for x, y in middles]
 
 
 def ground_of(scenes: Sequence[Scene]) -> tuple[float, float]:
@@ -61,31 +70,33 @@ def draw_strip(axes: Axes, recording: Recording, heat: ScalarMappable) -> None:
     """Draw the body where it was: whole where there is room, else its outline; and the path of its hub."""
     scenes, slope = recording.scenes, strip_slope(recording)
     shown = resting(recording)
+    left, right = ground_of([scenes[index] for index in shown])
+    letter_mm = LETTER_MM * max(1.0, (right - left) / LETTERS_TO_SCALE_MM)
     whole = apart(recording, shown, _width(scenes[0]) * 1.08)
     for index in set(shown) - set(whole):
         draw_outline(axes, scenes[index], slope)
     for index in whole:
-        draw_body(axes, scenes[index], slope, heat, recording.driven(scenes[index]["host_ms"]))
-        write_time(axes, scenes[index], slope, recording, LETTER_MM)
+        draw_body(axes, scenes[index], slope, heat, recording.driven(scenes[index]["host_ms"]), letter_mm)
+        write_time(axes, scenes[index], slope, recording, letter_mm)
     axes.plot(*on_paper([scene["hub"][:2] for scene in scenes], slope).T, color=COILS[0], lw=0.8, zorder=5)
-    left, right = ground_of([scenes[index] for index in shown])
-    draw_ground(axes, left, right, slope, scale(left, right - 6.0, 10))
+    draw_ground(axes, left, right, slope, scale(left, right - 6.0, 10 if right - left < 250 else 50))
     x, y = on_paper([[right, -2.0]], slope)[0]
     axes.text(x, y, "mm", ha="right", va="top", fontsize=6, color=GROUND, rotation=slope)
     frame(axes, strip_extent(recording))
 
 
 def draw_frames(axes: Sequence[Axes], recording: Recording, indexes: Sequence[int], heat: ScalarMappable) -> None:
-    """Draw one scene in each of the axes, all above the same piece of ground."""
-    chosen = [recording.scenes[index] for index in indexes]
-    left, right = ground_of(chosen)
+    """Draw one scene in each of the axes, above the same piece of ground unless the body went far."""
+    chosen, boxes = [recording.scenes[index] for index in indexes], frame_boxes(recording, indexes)
+    apart = len(set(boxes)) > 1
     quick = (chosen[-1]["host_ms"] - chosen[0]["host_ms"]) / len(chosen) < QUICK_MS
-    for each, scene in zip(axes, chosen, strict=True):
+    for each, scene, box in zip(axes, chosen, boxes, strict=True):
         slope = slope_of(scene)
+        left, right = ground_of([scene] if apart else chosen)
         draw_body(each, scene, slope, heat, recording.driven(scene["host_ms"]), FRAME_LETTER_MM)
         write_time(each, scene, slope, recording, FRAME_LETTER_MM, 3 if quick else 1)
         draw_ground(each, left, right, slope, scale(left, right, 20))
-        frame(each, frames_extent(recording, indexes))
+        frame(each, box)
 
 
 def scale(left_mm: float, right_mm: float, step_mm: int) -> list[float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,15 @@ from numpy.typing import NDArray
 from host.recording import Recording, Scene
 
 Numbers = NDArray[np.float64]
+NEAR_MM = 300.0  # a body that rolls farther is drawn up to here; its curves go on
 GAP_MM = 40.0  # a jump is shown at least this often along its path
+
+
+def nearby(recording: Recording) -> Recording:
+    """Return the recording with the scenes up to where the body first leaves the neighbourhood of its start."""
+    hubs = np.array([scene["hub"][:2] for scene in recording.scenes], dtype=float).reshape(-1, 2)
+    away = np.flatnonzero(np.hypot(*(hubs - hubs[:1]).T) > NEAR_MM)
+    return replace(recording, scenes=recording.scenes[: away[0]] if len(away) else recording.scenes)
 
 
 def onsets(recording: Recording) -> list[float]:

@@ -16,8 +16,8 @@ from host.errors import BadRequest
 from host.recording import Recording
 from host.view import curves
 from host.view.body import slope_of
-from host.view.film import draw_frames, draw_strip, frames_extent, strip_extent, strip_slope
-from host.view.instants import fastest, scene_times
+from host.view.film import draw_frames, draw_strip, frame_boxes, strip_extent, strip_slope
+from host.view.instants import Numbers, fastest, nearby, scene_times
 from host.view.style import FAINT, PAGE_MM, heat_scale, page
 
 LEFT_MM, RIGHT_MM, TOP_MM, BOTTOM_MM = 14.0, 3.0, 9.0, 9.0
@@ -35,17 +35,18 @@ def run_figure(recording: Recording) -> Figure:
     """Return the picture; BadRequest when nothing was recorded."""
     if not recording.telemetry:
         raise BadRequest("nothing to draw: the record holds no telemetry")
-    panels = list(CURVES)
-    if len(recording.scenes) > 1:
-        panels.append((curves.draw_travel, TRAVEL_MM))
-    film_mm = _film_heights(recording) if len(recording.scenes) > 1 else (0.0, 0.0)
-    height = TOP_MM + sum(film_mm) + 3 * NAME_MM * bool(film_mm[0]) + sum(mm + GAP_MM for _, mm in panels) + BOTTOM_MM
+    film = nearby(recording)
+    frames = fastest(film, FRAMES) if len(film.scenes) > 1 else []
+    panels = [*CURVES, (curves.draw_travel, TRAVEL_MM)] if frames else list(CURVES)
+    film_mm = _film_heights(film, frames) if frames else (0.0, 0.0)
+    height = TOP_MM + sum(film_mm) + NAME_MM + sum(mm + GAP_MM for _, mm in panels) + BOTTOM_MM
     figure = page(height)
     figure.text(LEFT_MM / PAGE_MM, 1 - 3.5 / height, recording.title, va="center", fontsize=8.5, weight="bold")
     sheet = _Sheet(figure, height)
-    if film_mm[0]:
-        _draw_film(sheet, recording, film_mm)
-    _draw_curves(sheet, recording, panels)
+    if frames:
+        _draw_film(sheet, film, frames, film_mm)
+    sheet.name("c" if frames else "", "what the robot measured" + ", and what was true" * bool(frames))
+    _draw_curves(sheet, recording, panels, scene_times(film)[frames])
     return figure
 
 
@@ -70,29 +71,29 @@ class _Sheet:
         self.y_mm -= NAME_MM
 
 
-def _film_heights(recording: Recording) -> tuple[float, float]:
-    """Return the heights of the strip and of the frames, which follow from their widths."""
-    strip, frames = strip_extent(recording), frames_extent(recording, fastest(recording, FRAMES))
+def _film_heights(film: Recording, frames: list[int]) -> tuple[float, float]:
+    """Return the heights of the strip and of the frames with their names, which follow from their widths."""
+    strip, frame = strip_extent(film), frame_boxes(film, frames)[0]
     wide = PAGE_MM - LEFT_MM - RIGHT_MM - BAR_MM
     strip_mm = wide * (strip[3] - strip[2]) / (strip[1] - strip[0])
-    frames_mm = (PAGE_MM - LEFT_MM - RIGHT_MM) / FRAMES * (frames[3] - frames[2]) / (frames[1] - frames[0])
-    return min(strip_mm, STRIP_MAX_MM) + GAP_MM, frames_mm + GAP_MM + 2.0
+    frame_mm = (PAGE_MM - LEFT_MM - RIGHT_MM) / FRAMES * (frame[3] - frame[2]) / (frame[1] - frame[0])
+    return NAME_MM + min(strip_mm, STRIP_MAX_MM) + GAP_MM, NAME_MM + frame_mm + GAP_MM
 
 
-def _draw_film(sheet: _Sheet, recording: Recording, heights_mm: tuple[float, float]) -> None:
-    hottest = max(coil["degc"] for scene in recording.scenes for coil in scene["coils"].values())
+def _draw_film(sheet: _Sheet, film: Recording, frames: list[int], heights_mm: tuple[float, float]) -> None:
+    hottest = max(coil["degc"] for scene in film.scenes for coil in scene["coils"].values())
     heat = heat_scale(hottest)
-    strip_mm = heights_mm[0] - GAP_MM
-    sheet.name("a", f"the body along the ground{_slope(recording)}, scale in mm; blue: the path of its hub")
+    strip_mm, frame_mm = (height - NAME_MM - GAP_MM for height in heights_mm)
+    sheet.name("a", f"the body along the ground{_slope(film)}, scale in mm; blue: the path of its hub")
     wide = PAGE_MM - LEFT_MM - RIGHT_MM - BAR_MM
-    draw_strip(sheet.axes(LEFT_MM, wide, strip_mm), recording, heat)
+    draw_strip(sheet.axes(LEFT_MM, wide, strip_mm), film, heat)
     _draw_bar(sheet, heat, strip_mm)
-    sheet.y_mm -= heights_mm[0]
+    sheet.y_mm -= strip_mm + GAP_MM
     sheet.name("b", "its fastest movement, shaded in c; a dot marks the coil that is driven")
     each = (PAGE_MM - LEFT_MM - RIGHT_MM) / FRAMES
-    boxes = [sheet.axes(LEFT_MM + i * each, each, heights_mm[1] - GAP_MM - 2.0) for i in range(FRAMES)]
-    draw_frames(boxes, recording, fastest(recording, FRAMES), heat)
-    sheet.y_mm -= heights_mm[1]
+    boxes = [sheet.axes(LEFT_MM + i * each, each, frame_mm) for i in range(FRAMES)]
+    draw_frames(boxes, film, frames, heat)
+    sheet.y_mm -= frame_mm + GAP_MM
 
 
 def _slope(recording: Recording) -> str:
@@ -112,15 +113,14 @@ def _draw_bar(sheet: _Sheet, heat: ScalarMappable, height_mm: float) -> None:
     box.set_title("coil [°C]", fontsize=6.5, pad=6)
 
 
-def _draw_curves(sheet: _Sheet, recording: Recording, panels: list[Panel]) -> None:
-    if len(recording.scenes) > 1:
-        sheet.name("c", "what the robot measured, and what was true")
+def _draw_curves(sheet: _Sheet, recording: Recording, panels: list[Panel], shaded_s: Numbers) -> None:
     first: Axes | None = None
     for draw, height_mm in panels:
         axes = sheet.axes(LEFT_MM, PAGE_MM - LEFT_MM - RIGHT_MM, height_mm, first)
         first = first or axes
         draw(axes, recording)
-        _mark_frames(axes, recording)
+        if len(shaded_s):
+            axes.axvspan(shaded_s[0], shaded_s[-1], color=FAINT, alpha=0.25, lw=0, zorder=0)
         axes.yaxis.set_label_coords(-9.0 / (PAGE_MM - LEFT_MM - RIGHT_MM), 0.5)
         axes.tick_params(labelbottom=False)
         sheet.y_mm -= height_mm + GAP_MM
@@ -129,10 +129,3 @@ def _draw_curves(sheet: _Sheet, recording: Recording, panels: list[Panel]) -> No
     axes.set_xlabel("time [s]", labelpad=1)
     times = curves.record_times(recording)
     axes.set_xlim(float(times[0]), float(times[-1]))
-
-
-def _mark_frames(axes: Axes, recording: Recording) -> None:
-    """Shade the time that the frames of (b) show."""
-    if len(recording.scenes) > 1:
-        times = scene_times(recording)[fastest(recording, FRAMES)]
-        axes.axvspan(times[0], times[-1], color=FAINT, alpha=0.25, lw=0, zorder=0)
