@@ -49,8 +49,8 @@ class Core:
         self._stop = StopFinder()
         self._turn = 0
 
-    def step(self, now_ms: int, data: bytes) -> bytes:
-        """Take the bytes that arrived, run one control step, and return the bytes to send."""
+    def step(self, now_ms: int, data: bytes, room: int = 512) -> bytes:
+        """Take the bytes that arrived, run one control step, and return the bytes to send: at most `room`."""
         self.now_ms = now_ms
         if self.state == messages.BOOT:
             self._begin()
@@ -62,7 +62,7 @@ class Core:
             self.trip(code, self.guard.channel, self.guard.value)
         self._end_program()
         self.reports.tell()
-        return self.link.poll(now_ms)
+        return self.link.poll(now_ms, room)
 
     def control(self, now_ms: int) -> int:
         """Sense, guard, sequence and drive once; return the code of a fault, or 0. Allocates nothing."""

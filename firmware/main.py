@@ -29,7 +29,7 @@ def loop(board: pico.Board, core: Core) -> None:
     last = time.ticks_ms()
     due = last
     while True:
-        board.write(core.step(now_ms, board.read()))
+        board.write(core.step(now_ms, board.read(), board.room()))
         board.feed()
         due = time.ticks_add(due, STEP_MS)
         left = time.ticks_diff(due, time.ticks_ms())

@@ -16,6 +16,7 @@ from protocol.messages import ALIVE
 
 WINDOW = 8  # frames on the way at once
 QUEUE_MAX = 64
+FRAME_MAX = frames.BODY_MAX + 2  # on the wire, stuffed and delimited
 TRIES_MAX = 12
 RTO_FIRST_MS = 250
 RTO_MIN_MS = 100  # a full window of long frames takes that long at 115200 baud
@@ -108,17 +109,29 @@ class Link:
                 self._take_posted(frame, delivered)
         return delivered
 
-    def poll(self, now_ms: int) -> bytes:
-        """Return the bytes to write now: new frames, frames that are due again, an acknowledgement if one is owed."""
-        out = [self._sealed(waiting, now_ms) for waiting in self._waiting[:WINDOW] if self._due(waiting, now_ms)]
-        for kind, payload in self._posts:
-            out.append(self._line(kind, self._next_post, payload, 0))
-            self._next_post = (self._next_post + (kind >= frames.UNSEEDED_BELOW)) & 255
-        self._posts.clear()
-        if self._ack_due and not out:
+    def poll(self, now_ms: int, room: int = 65_536) -> bytes:
+        """Return the bytes to write now: new frames, frames that are due again, an acknowledgement if one is owed.
+
+        No frame is begun that might not fit into `room` bytes; what is left comes with a later call.
+        """
+        out = []
+        for waiting in self._waiting[:WINDOW]:
+            if room >= FRAME_MAX and self._due(waiting, now_ms):
+                out.append(self._sealed(waiting, now_ms))
+                room -= len(out[-1])
+        while self._posts and room >= FRAME_MAX:
+            out.append(self._posted())
+            room -= len(out[-1])
+        if self._ack_due and not out and room >= FRAME_MAX:
             out.append(self._line(ALIVE.number, 0, b"", 0))
-        self._ack_due = False
+        self._ack_due = self._ack_due and not out
         return b"".join(out)
+
+    def _posted(self) -> bytes:
+        kind, payload = self._posts.pop(0)
+        line = self._line(kind, self._next_post, payload, 0)
+        self._next_post = (self._next_post + (kind >= frames.UNSEEDED_BELOW)) & 255
+        return line
 
     def _take_reliable(self, frame, delivered: list) -> None:
         self._ack_due = True

@@ -6,6 +6,8 @@ Times are those at which the coil's current stopped on the bench, after outputs,
 import pytest
 
 from host.errors import Refused, SoftrigError
+from protocol import frames
+from protocol.messages import DICTIONARY
 
 STEP_S = 0.005
 LEASE_S = 0.5
@@ -152,3 +154,18 @@ def test_a_broken_thermistor_is_not_believed(rig, fault):
 
     assert rig.robot.status().code == 109
     assert not rig.bench.any_coil_on
+
+
+def test_a_host_that_asks_for_too_much_cannot_hold_up_the_control_step(rig):
+    """Answers wait for the line's room; the step never waits for the line."""
+    rig.robot.subscribe(1)
+    rig.fire("A", duty_percent=30, hold_s=1)
+    page = DICTIONARY.pack(offset=0)
+    flood = frames.encode(frames.seal(DICTIONARY.number, 0, 0, page, 0, 0)) * 100
+
+    rig.link.write(flood)
+    rig.run(seconds=2)
+
+    status = rig.robot.status()
+    assert status.overruns == 0
+    assert rig.coil("A").off_at_s - rig.coil("A").on_at_s == pytest.approx(1.0, abs=STEP_S)

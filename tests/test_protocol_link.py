@@ -144,3 +144,20 @@ def test_unseeded_frames_do_not_touch_the_session():
 
     assert received.payload == b"hi"
     assert b.heard_ms is None
+
+
+def test_no_more_is_written_than_there_is_room_and_nothing_is_lost():
+    a, b = links.Link(SEED), links.Link(SEED)
+    for number in range(6):
+        a.send(FIRE.number, bytes((number,)) * 200, 0)
+        a.post(TELEMETRY.number, bytes((number,)) * 200)
+    got = []
+
+    for now_ms in range(0, 1000, 5):
+        data = a.poll(now_ms, room=300)
+        assert len(data) <= 300
+        got += [received.payload[0] for received in b.receive(data, now_ms)]
+        a.receive(b.poll(now_ms), now_ms)
+
+    assert got == [0, 1, 2, 3, 4, 5] * 2
+    assert (b.missed, a.resent) == (0, 0)

@@ -15,6 +15,8 @@ from firmware.drivers.pca9685 import Pca9685
 
 WATCHDOG_MS = 200
 BAUD = 115_200
+BUFFER_BYTES = 512
+BYTES_PER_STEP = BAUD // 10 * 5 // 1000  # that leave the line in a control step
 
 
 class Board:
@@ -26,7 +28,8 @@ class Board:
         self._estop = Pin(6, Pin.IN, Pin.PULL_DOWN)
         self._beat = 0
         self._bus = I2C(0, scl=Pin(5), sda=Pin(4), freq=400_000)
-        self._uart = UART(0, baudrate=BAUD, tx=Pin(0), rx=Pin(1), txbuf=512, rxbuf=512)
+        self._uart = UART(0, baudrate=BAUD, tx=Pin(0), rx=Pin(1), txbuf=BUFFER_BYTES, rxbuf=BUFFER_BYTES)
+        self._backlog = 0  # bytes that the line has not sent yet, at most
         self._thermistor = ADC(Pin(26))
         self._watchdog = WDT(timeout=WATCHDOG_MS)
 
@@ -59,9 +62,15 @@ class Board:
         """Return the bytes that have arrived."""
         return self._uart.read() or b""
 
+    def room(self) -> int:
+        """Return how many bytes `write` takes without waiting; call once a control step."""
+        self._backlog = max(0, self._backlog - BYTES_PER_STEP)
+        return BUFFER_BYTES - self._backlog
+
     def write(self, data: bytes) -> None:
-        """Send bytes to the host."""
+        """Send bytes to the host; waits for the line only when there are more than `room`."""
         if data:
+            self._backlog += len(data)
             self._uart.write(data)
 
     def feed(self) -> None:
