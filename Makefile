@@ -56,6 +56,8 @@ demo: $(READY)
 
 docs: $(READY)
 	$(BIN)/python docs/generate.py
+	$(BIN)/softrig run gaits/circular-crawl.gait --robot sim:circular --plot docs/crawl.svg >/dev/null
+	$(BIN)/softrig figure 3 -o docs/poses.svg
 
 bench: $(READY)
 	@for file in benchmarks/*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done

@@ -39,9 +39,10 @@ ARGUMENTS = {
     "off": "coils u32",
 }
 UNITS = {
-    "mv": "mV", "ma": "mA", "mj": "mJ", "uj": "µJ", "mohm": "mΩ", "ms": "ms", "degc": "°C", "permille": "‰", "k": "",
-    "max": "",
+    "_uj_per_k": "µJ/K", "_uw_per_k": "µW/K", "_mv": "mV", "_ma": "mA", "_mj": "mJ", "_uj": "µJ", "_mohm": "mΩ",
+    "_ms": "ms", "_degc": "°C", "_permille": "‰", "bytes": "bytes",
 }  # fmt: skip
+WIDTH = 100  # of the help texts
 
 
 def main(arguments: list[str]) -> int:
@@ -159,47 +160,40 @@ def limits_page() -> str:
         groups = [(name, labels) for name, labels in profile["groups"]]
         parts += [f"## {profile['robot']}\nSupply {profile['supply_mv']} mV.\n"]
         parts += [table(("bit", "label", "kind", "chip", "output"), channels), table(("group", "labels"), groups)]
+        sections = ("coil", "supply", "session", "program")
         limits = [
-            (f"{part}.{key}", *with_unit(key, value))
-            for part in ("coil", "supply", "session", "program")
-            for key, value in profile[part].items()
+            (f"{part}.{key}", str(value), unit_of(key)) for part in sections for key, value in profile[part].items()
         ]
         parts.append(table(("limit", "value", "unit"), limits))
     return "\n".join(parts)
 
 
-def with_unit(key: str, value: int) -> tuple[str, str]:
-    """Return a profile's number and the unit that stands in its key."""
-    if key.endswith("_per_k"):
-        unit = UNITS.get(key.split("_")[-3], key.split("_")[-3]) + "/K"
-        return str(value), unit.replace("uw", "µW")
-    found = [UNITS[word] for word in key.split("_") if UNITS.get(word)]
-    return str(value), found[-1] if found else ""
+def unit_of(key: str) -> str:
+    """Return the unit that ends a profile's key, whether or not `_max` follows it."""
+    return next((unit for end, unit in UNITS.items() if key.removesuffix("_max").endswith(end)), "")
 
 
 def commands_page() -> str:
     """Return the help of every command."""
-    parts = ["# Commands\n", help_of(softrig, click.Context(softrig, info_name="softrig", terminal_width=100))]
-    top = click.Context(softrig, info_name="softrig", terminal_width=100)
-    for path, command in commands(softrig, top, "softrig"):
-        parts.append(f"## {path}\n")
-        parts.append(help_of(command, click.Context(command, info_name=path, terminal_width=100)))
+    top = click.Context(softrig, info_name="softrig", terminal_width=WIDTH, **softrig.context_settings)
+    parts = ["# Commands\n", help_of(top)]
+    for context in contexts(softrig, top):
+        parts += [f"## {context.command_path}\n", help_of(context)]
     return "\n".join(parts)
 
 
-def commands(group: click.Group, context: click.Context, path: str) -> Iterator[tuple[str, click.Command]]:
-    """Yield (name as typed, command) of everything below a group that has no commands of its own."""
-    for name in group.list_commands(context):
-        command = group.get_command(context, name)
-        if isinstance(command, click.Group):
-            yield from commands(command, context, f"{path} {name}")
-        elif command:
-            yield f"{path} {name}", command
+def contexts(group: click.Group, above: click.Context) -> Iterator[click.Context]:
+    """Yield the context of everything below a group that has no commands of its own."""
+    for name in group.list_commands(above):
+        command = group.get_command(above, name)
+        if command is not None:
+            context = click.Context(command, info_name=name, parent=above)
+            yield from contexts(command, context) if isinstance(command, click.Group) else [context]
 
 
-def help_of(command: click.Command, context: click.Context) -> str:
+def help_of(context: click.Context) -> str:
     """Return what `--help` prints, as a block."""
-    return f"```\n{command.get_help(context)}\n```\n"
+    return f"```\n{context.get_help()}\n```\n"
 
 
 def first_sentence(docstring: str | None) -> str:

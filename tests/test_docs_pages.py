@@ -1,0 +1,84 @@
+"""The pages say what is so: generated ones are fresh, commands and files that the README names exist."""
+
+import importlib.util
+import re
+from pathlib import Path
+
+import click
+import pytest
+
+from host.cli import main as softrig
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def generate():
+    """Return docs/generate.py as a module."""
+    spec = importlib.util.spec_from_file_location("generate", ROOT / "docs" / "generate.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_generated_pages_are_fresh(generate):
+    assert generate.main(["--check"]) == 0
+
+
+def test_a_page_that_is_not_as_its_table_is_named(generate, tmp_path, monkeypatch, capsys):
+    (tmp_path / "templates").symlink_to(generate.DOCS / "templates")
+    monkeypatch.setattr(generate, "DOCS", tmp_path)
+    generate.main([])
+    (tmp_path / "codes.md").write_text("R04 is out of fashion\n")
+
+    status = generate.main(["--check"])
+
+    assert status == 1
+    assert capsys.readouterr().err == "docs/codes.md is out of date: make docs\n"
+
+
+def test_the_example_on_the_protocol_page_is_a_hello(generate):
+    line = re.search(r"^    ((?:[0-9a-f]{2} )+00)$", generate.protocol_page(), re.MULTILINE)[1]
+
+    (frame,) = generate.frames.Decoder().feed(bytes.fromhex(line))
+
+    assert generate.messages.HELLO.unpack(frame.payload) == (1, 0x12345678)
+
+
+def test_every_command_the_readme_names_exists():
+    context = click.Context(softrig)
+
+    named = set(re.findall(r"(?:^|`)softrig ([a-z]+)", README, re.MULTILINE))
+
+    assert len(named) > 8
+    assert named <= set(softrig.list_commands(context))
+
+
+def test_every_target_the_readme_names_exists():
+    targets = set(re.findall(r"^([a-z]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
+
+    named = set(re.findall(r"(?:^|`)make ([a-z]+)", README, re.MULTILINE))
+
+    assert {"demo", "test"} <= named <= targets
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/design.md"])
+def test_every_file_a_page_links_to_exists(page):
+    text = (ROOT / page).read_text(encoding="utf-8")
+
+    linked = [(ROOT / page).parent / path for path in re.findall(r"\]\(([^)#:]+)\)", text)]
+    named = [
+        ROOT / path for path in re.findall(r"`((?:gaits|hil_sim|host|firmware|protocol|docs|tests)/[\w/.-]+)`", text)
+    ]
+
+    assert linked
+    assert [str(path) for path in linked + named if not path.exists()] == []
+
+
+def test_every_make_target_is_listed_by_bare_make():
+    text = (ROOT / "Makefile").read_text(encoding="utf-8")
+
+    phony = re.search(r"^\.PHONY: (.*)$", text, re.MULTILINE)[1].split()
+
+    assert all(f'@echo "make {target} ' in text for target in phony if target != "help")
