@@ -1,6 +1,6 @@
 """Our frames against pymavlink's on the same 42 bytes: a time, 18 words and two bytes, field values to bytes and back.
 
-    python benchmarks/bench_codec.py
+python benchmarks/bench_codec.py
 """
 
 import time

@@ -1,7 +1,7 @@
 """How a running bench is found by other programs of the same user, `softrig ports` among them.
 
-    with Announcement({"robot": "circular", "pty": "/dev/pts/3", "link": None}):
-        ...
+with Announcement({"robot": "circular", "pty": "/dev/pts/3", "link": None}):
+    ...
 """
 
 import json

@@ -1,6 +1,6 @@
 """What can go wrong on the bench, by name, at a time.
 
-    schedule(bench, 2_000_000, "cable-cut")
+schedule(bench, 2_000_000, "cable-cut")
 """
 
 from collections.abc import Callable

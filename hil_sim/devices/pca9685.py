@@ -45,7 +45,7 @@ class Pca9685:
         self.registers = bytearray(256)
         self.registers[MODE1] = SLEEP | ALLCALL
         self.registers[MODE2] = TOTEM_POLE
-        self.registers[SUBADR1 : LED0] = bytes((0xE2, 0xE4, 0xE8, 0xE0))
+        self.registers[SUBADR1:LED0] = bytes((0xE2, 0xE4, 0xE8, 0xE0))
         for channel in range(16):
             self.registers[LED0 + 4 * channel + 3] = _FULL
         self.registers[PRE_SCALE] = 0x1E
