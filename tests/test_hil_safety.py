@@ -156,8 +156,8 @@ def test_a_broken_thermistor_is_not_believed(rig, fault):
     assert not rig.bench.any_coil_on
 
 
-def test_a_host_that_asks_for_too_much_cannot_hold_up_the_control_step(rig):
-    """Answers wait for the line's room; the step never waits for the line."""
+def test_a_host_that_asks_for_more_than_the_line_carries_gets_whole_frames_and_late_steps_nowhere(rig):
+    """What does not fit the transmit buffer is lost on the board: answers wait for the line's room instead."""
     rig.robot.subscribe(1)
     rig.fire("A", duty_percent=30, hold_s=1)
     page = DICTIONARY.pack(offset=0)
@@ -168,4 +168,5 @@ def test_a_host_that_asks_for_too_much_cannot_hold_up_the_control_step(rig):
 
     status = rig.robot.status()
     assert status.overruns == 0
+    assert rig.robot.statistics()["frames_damaged"] == 0
     assert rig.coil("A").off_at_s - rig.coil("A").on_at_s == pytest.approx(1.0, abs=STEP_S)

@@ -63,12 +63,12 @@ class Board:
         return self._uart.read() or b""
 
     def room(self) -> int:
-        """Return how many bytes `write` takes without waiting; call once a control step."""
+        """Return how many bytes `write` takes now; call once a control step."""
         self._backlog = max(0, self._backlog - BYTES_PER_STEP)
         return BUFFER_BYTES - self._backlog
 
     def write(self, data: bytes) -> None:
-        """Send bytes to the host; waits for the line only when there are more than `room`."""
+        """Send bytes to the host; what is more than `room` would be lost."""
         if data:
             self._backlog += len(data)
             self._uart.write(data)
