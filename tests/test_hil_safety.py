@@ -156,7 +156,7 @@ def test_a_broken_thermistor_is_not_believed(rig, fault):
     assert not rig.bench.any_coil_on
 
 
-def test_a_host_that_asks_for_more_than_the_line_carries_gets_whole_frames_and_late_steps_nowhere(rig):
+def test_a_flood_of_requests_is_answered_in_whole_frames_and_makes_no_step_late(rig):
     """What does not fit the transmit buffer is lost on the board: answers wait for the line's room instead."""
     rig.robot.subscribe(1)
     rig.fire("A", duty_percent=30, hold_s=1)
