@@ -104,19 +104,28 @@ class Sense:
         self._transform(channel, t + moved)
 
     def _latent_uj_per_k(self, channel: int, t: int, energy_nj: int) -> int:
-        """Return the apparent heat capacity of the phase change where one is going on."""
+        """Return the apparent heat capacity of the phase change where one is going on.
+
+        A coil that was cooled in between and is heated again takes no latent heat before it is back on its heating
+        line: what has transformed does not transform twice. On cooling too much is given, so that the estimate errs
+        to the hot side.
+        """
         coil = self._coil
         martensite = self._martensite_permille[channel]
-        if energy_nj > 0 and coil.as_millidegc <= t < coil.af_millidegc and martensite > 0:
+        if energy_nj > 0 and coil.as_millidegc <= t < coil.af_millidegc and martensite >= self._most_permille(t):
             return coil.latent_uj * 1000 // (coil.af_millidegc - coil.as_millidegc)
         if energy_nj < 0 and coil.mf_millidegc < t <= coil.ms_millidegc and martensite < 1000:
             return coil.latent_uj * 1000 // (coil.ms_millidegc - coil.mf_millidegc)
         return 0
 
+    def _most_permille(self, t: int) -> int:
+        """Return the martensite fraction of the heating line at that temperature."""
+        return 1000 * (self._coil.af_millidegc - t) // (self._coil.af_millidegc - self._coil.as_millidegc)
+
     def _transform(self, channel: int, t: int) -> None:
         """Hold the martensite fraction between its heating and cooling lines."""
         coil = self._coil
-        most = 1000 * (coil.af_millidegc - t) // (coil.af_millidegc - coil.as_millidegc)
+        most = self._most_permille(t)
         least = 1000 * (coil.ms_millidegc - t) // (coil.ms_millidegc - coil.mf_millidegc)
         martensite = self._martensite_permille[channel]
         martensite = min(martensite, most)

@@ -424,3 +424,23 @@ def test_a_guard_within_a_loop_is_one_guard(rig):
     rig.run(1500)
 
     assert rig.core.code == codes.GUARD
+
+
+def test_what_has_transformed_takes_no_latent_heat_a_second_time(rig):
+    """Else the estimate lags behind a coil that is heated in bursts, and the coil cooks before the trip."""
+
+    def driven(duty_permille: int, until) -> int:
+        """Return the milliseconds until the estimate of coil 0 is there."""
+        sense, begun = rig.core.sense, rig.now_ms
+        while not until(sense.temperature_millidegc[0]):
+            rig.now_ms += 5
+            sense.update(rig.now_ms, 1, [duty_permille])
+        return rig.now_ms - begun
+
+    first_ms = driven(1000, lambda t: t >= 75_000)
+    driven(0, lambda t: t <= 60_000)
+    second_ms = driven(1000, lambda t: t >= 75_000)
+
+    sensible_ms = (75 - 60) * rig.profile.coil.heat_capacity_uj_per_k // 380
+    assert first_ms > 400
+    assert second_ms < 2 * sensible_ms
