@@ -1,5 +1,7 @@
 """Puts a bench together from an address: robot file, body, wires and firmware image."""
 
+import json
+
 from hil_sim.address import Address
 from hil_sim.bench import Bench, Parts
 from hil_sim.devices.ntc import Ntc
@@ -12,12 +14,27 @@ from hil_sim.worlds.image import Image
 def assemble(address: Address) -> Bench:
     """Return the bench of an address, powered on at time 0; RobotFileError when its robot cannot be built."""
     robot = load(address.robot, address.overrides)
-    image = Image.installed(robot.profile.read_bytes())
+    profile = robot.profile.read_bytes()
+    _agree(robot, profile)
+    image = Image.installed(profile)
     identity = f"{robot.name} {address.seed}"
     try:
         return Bench(parts_of(robot), RingPlant(robot), image, baud=address.baud, identity=identity)
     except (ArithmeticError, CameApart) as error:
         raise RobotFileError(f"{robot.name} cannot be built from these numbers: {error}") from error
+
+
+def _agree(robot: RobotFile, profile: bytes) -> None:
+    """Raise RobotFileError unless the firmware's profile names the same coils on the same outputs."""
+    try:
+        rows = [(row["label"], (row["chip"], row["output"])) for row in json.loads(profile)["channels"]]
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        raise RobotFileError(f"{robot.profile}: no profile of a robot ({error!r})") from None
+    wired = [(label, robot.wiring.outputs[label]) for label in robot.labels]
+    if rows != wired:
+        odd = [label for label, _ in dict.fromkeys([row for row in [*wired, *rows] if (row in wired) != (row in rows)])]
+        which = " ".join(dict.fromkeys(odd)) or "their order"
+        raise RobotFileError(f"{robot.name} and its profile {robot.profile} differ in labels or outputs: {which}")
 
 
 def parts_of(robot: RobotFile) -> Parts:

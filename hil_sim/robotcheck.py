@@ -12,6 +12,7 @@ from hil_sim.robotkeys import KEYS, UNITS, Key
 
 STANDINGS = ("paper", "read", "derived", "assumed", "fitted")
 KINDS = ("ring",)
+CHIPS = (96, 97)  # PWM chips of the board
 TEXTS = {"": ("about", "profile"), "shell": ("kind",), "coils": ("labels",), "wiring": ("outputs",)}
 FOR_THE_READER = ("derived",)  # a section that is held to the form but not to the table of keys
 RISING = ("martensite_finish", "martensite_start", "austenite_start", "austenite_finish")
@@ -118,6 +119,8 @@ class Check:
         labels, outputs = coils.get("labels", []), wiring.get("outputs", {})
         if not (isinstance(labels, list) and all(isinstance(label, str) for label in labels)):
             self._say("coils.labels", 'labels: write them as ["A", "B", ...]')
+        elif not labels:
+            self._say("coils.labels", "labels: a robot has at least one coil")
         elif len(set(labels)) < len(labels):
             self._say("coils.labels", "labels: each coil needs its own")
         elif not isinstance(outputs, dict) or sorted(outputs) != sorted(labels):
@@ -132,6 +135,9 @@ class Check:
                 self._say("wiring.outputs", f"outputs: {label} needs [chip address, output number]")
                 continue
             chip, output = place
+            if chip not in CHIPS:
+                known = " and ".join(map(str, CHIPS))
+                self._say("wiring.outputs", f"outputs: {label} on chip {chip}, the board has {known}")
             if not 0 <= output < 16:
                 self._say("wiring.outputs", f"outputs: {label} on output {output}, a chip has 0 to 15")
             if (chip, output) in seen:
@@ -188,5 +194,5 @@ def near(word: str, known: Collection[str]) -> str:
 
 
 def is_number(value: object) -> bool:
-    """Return whether this is a number of TOML."""
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    """Return whether this is a number of TOML, and no whole number beyond what can be counted with."""
+    return isinstance(value, float) or (type(value) is int and abs(value) < 1 << 63)

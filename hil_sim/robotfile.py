@@ -82,9 +82,13 @@ def names() -> list[str]:
 def load(robot: str, overrides: Mapping[str, str] | None = None) -> RobotFile:
     """Read the robot of that name, or the file at that path; RobotFileError tells all that is wrong with it."""
     path = find(robot)
-    text = path.read_text(encoding="utf-8")
     try:
+        text = path.read_text(encoding="utf-8")
         data = tomllib.loads(text)
+    except UnicodeDecodeError:
+        raise RobotFileError(f"{path}: not TOML: it is not UTF-8 text") from None
+    except RecursionError:
+        raise RobotFileError(f"{path}: not TOML: nested too deeply") from None
     except tomllib.TOMLDecodeError as error:
         raise RobotFileError(f"{path}: not TOML: {error}") from None
     check = Check(path, text, data, overrides or {})

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from hil_sim.address import parse
+from hil_sim.assembly import assemble
 from hil_sim.robotfile import FOLDER, RobotFileError, load
 
 CIRCULAR = (FOLDER / "circular.toml").read_text(encoding="utf-8")
@@ -24,6 +26,9 @@ MISTAKES = [
     ('"G", "H"]', '"G", "G"]', "labels: each coil needs its own"),
     ("H = [96, 7]", "H = [96, 6]", "outputs: H and G share [96, 6]"),
     ("H = [96, 7]", "H = [96, 16]", "outputs: H on output 16, a chip has 0 to 15"),
+    ("H = [96, 7]", "H = [64, 7]", "outputs: H on chip 64, the board has 96 and 97"),
+    ("mass_g = [1.6,", f"mass_g = [{'9' * 400},", "mass_g: write it as mass_g = [value, "),
+    ('["A", "B", "C", "D", "E", "F", "G", "H"]', "[]", "labels: a robot has at least one coil"),
     (", H = [96, 7]", "", "outputs: one [chip, output] for each of A, B, C, D, E, F, G, H"),
 ]
 
@@ -68,6 +73,26 @@ def test_a_file_that_is_no_toml_is_told_with_its_line(tmp_path):
     file.write_text("about = unquoted\n", encoding="utf-8")
 
     assert "line 1" in refusal(str(file))
+
+
+@pytest.mark.parametrize(("data", "told"), [(b"\xff\xfe\x00", "not UTF-8"), (b"a = " + b"[" * 100_000, "too deeply")])
+def test_a_file_that_is_no_text_or_without_end_is_told_so(data, told, tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_bytes(data)
+
+    assert told in refusal(str(file))
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "told"),
+    [('"label": "H"', '"label": "Z"', "differ in labels or outputs: H Z"), ("{", "{,", "no profile of a robot")],
+)
+def test_a_profile_that_does_not_fit_its_body_is_refused(right, wrong, told, tmp_path):
+    (tmp_path / "mine.toml").write_text(CIRCULAR.replace('profile = "circular"', 'profile = "mine.json"'))
+    (tmp_path / "mine.json").write_text(load("circular").profile.read_text().replace(right, wrong, 1))
+
+    with pytest.raises(RobotFileError, match=told):
+        assemble(parse(str(tmp_path / "mine.toml")))
 
 
 def test_an_empty_file_is_refused_and_does_not_crash(tmp_path):
