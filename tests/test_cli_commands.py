@@ -3,6 +3,8 @@
 import json
 import os
 import re
+import subprocess
+import sys
 from types import SimpleNamespace
 
 import pytest
@@ -357,3 +359,15 @@ def test_a_picture_that_cannot_be_written_is_said_in_one_line(softrig, line, scr
 
     assert told.status == 2
     assert told.err == "softrig: cannot write /proc/x.svg: No such file or directory\n"
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="needs a full disk")
+def test_an_output_that_cannot_be_written_is_said_in_one_line():
+    with open("/dev/full", "wb") as full:
+        ended = subprocess.run(
+            [sys.executable, "-c", "from host.cli import main; main(['explain'])"],
+            stdout=full, stderr=subprocess.PIPE, text=True, check=False,
+        )  # fmt: skip
+
+    assert ended.stderr == "softrig: the output cannot be written: No space left on device\n"
+    assert ended.returncode == 1

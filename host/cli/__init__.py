@@ -9,7 +9,8 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from errno import ENOSPC
 from importlib import import_module
 from typing import Any
 
@@ -105,6 +106,11 @@ def _told(error: BaseException, as_json: bool) -> int:
         return INTERRUPTED
     if isinstance(error, BrokenPipeError):
         sys.stderr.close()  # whoever read our output has gone; nothing is left to tell
+        return 1
+    if isinstance(error, OSError) and error.errno == ENOSPC:
+        click.echo(f"softrig: the output cannot be written: {error.strerror}", err=True)
+        with suppress(OSError):
+            sys.stdout.close()  # else what is left in it is tried again, and told about, at the very end
         return 1
     if not isinstance(error, SoftrigError):
         raise error
