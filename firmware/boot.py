@@ -9,6 +9,6 @@ from machine import I2C, Pin
 Pin(2, Pin.OUT, value=0)
 Pin(3, Pin.OUT, value=0)
 try:
-    I2C(0, scl=Pin(5), sda=Pin(4), freq=400_000).writeto(0, b"\x06")
+    I2C(0, scl=Pin(5), sda=Pin(4), freq=400_000, timeout=1000).writeto(0, b"\x06")
 except OSError:
-    pass  # no chip answers: the supply is off, and the self-test will say so
+    pass  # no chip answers: the supply is off, and the core will say so

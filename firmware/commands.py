@@ -1,28 +1,23 @@
-"""One handler for each message that a host may send.
+"""One handler for each order that a session may give.
 
 A handler changes something and returns, or raises Refused with the code and the limit; nothing that arrives can raise
-anything else. Requests are answered with `ok`, `refused` or their own answer, under the number of their frame.
+anything else. Orders are answered with `ok`, `refused` or their own answer, under the number of their frame.
 """
 
-from binascii import crc32
-
 from firmware.channels import Refused
-from protocol import codes, frames, messages, program
+from firmware.upload import Upload
+from protocol import codes, messages
 
-PAGE = 200  # bytes of dictionary text in an answer
-FIGURE_MAX = 0x7FFFFFFF  # that an answer can carry: what a host sent may be greater
+FIGURE_MAX = 0x7FFFFFFF  # that the fields of a refusal hold
 
 
 class Commands:
-    """Serves what the link delivers."""
+    """Serves what the link delivers in order."""
 
     def __init__(self, core) -> None:
-        self.outlives_host = False  # the uploaded program runs on when the lease runs out
+        self.upload = Upload(core.profile)
         self._core = core
-        self._header = None
-        self._code = bytearray(0)
-        self._unseeded = ((messages.HELLO, self._hello), (messages.DICTIONARY, self._dictionary))
-        self._requests = (
+        self._orders = (
             (messages.ARM, self._arm), (messages.DISARM, self._disarm), (messages.CLEAR, self._clear),
             (messages.FIRE, self._fire), (messages.STATUS_REQUEST, self._status),
             (messages.SUBSCRIBE, self._subscribe), (messages.PROGRAM, self._program), (messages.CODE, self._piece),
@@ -31,68 +26,39 @@ class Commands:
 
     def serve(self, received) -> None:
         """Serve one received frame."""
-        if received.kind < frames.UNSEEDED_BELOW:
-            self._serve_unseeded(received)
-            return
         try:
             handler, order = self._understood(received)
             answered = handler(order, received.seq)
         except Refused as refused:
-            self._answer(
-                messages.REFUSED, request=received.seq, code=refused.code, channel=refused.channel,
-                value=min(refused.value, FIGURE_MAX), limit=min(refused.limit, FIGURE_MAX),
-            )  # fmt: skip
+            self._refuse(received.seq, refused)
             return
         if not answered:
             self._answer(messages.OK, request=received.seq)
 
-    def stopped(self, coils: int) -> None:
-        """Say that the stop pattern arrived and every coil is off."""
-        core = self._core
-        now = core.now_ms & 0xFFFFFFFF
-        payload = messages.STOPPED.pack(state=core.state, code=core.code, coils=coils, now_ms=now)
-        core.link.post(messages.STOPPED.number, payload)
-
-    def _serve_unseeded(self, received) -> None:
-        for message, handler in self._unseeded:
-            if message.number == received.kind:
-                try:
-                    handler(message.unpack(received.payload))
-                except ValueError:
-                    self._nak(received.kind, codes.BAD_PAYLOAD)
+    def go_on(self) -> None:
+        """Verify some more of a program that waits to be started, and start it when all is well."""
+        request = self.upload.request
+        if request < 0:
+            return
+        try:
+            if not self.upload.go_on():
                 return
-        self._nak(received.kind, codes.UNKNOWN_MESSAGE)
+            self._armed()
+        except Refused as refused:
+            self._refuse(request, refused)
+        else:
+            self._core.start(self.upload.code)
+            self._answer(messages.OK, request=request)
+        self.upload.request = -1
 
     def _understood(self, received) -> tuple:
-        for message, handler in self._requests:
+        for message, handler in self._orders:
             if message.number == received.kind:
                 try:
                     return handler, message.unpack(received.payload)
                 except ValueError:
                     raise Refused(codes.BAD_PAYLOAD, 255, len(received.payload)) from None
         raise Refused(codes.UNKNOWN_MESSAGE, 255, received.kind)
-
-    def _hello(self, hello) -> None:
-        core = self._core
-        if hello.version != frames.VERSION:
-            self._nak(messages.HELLO.number, codes.OTHER_VERSION)
-            return
-        free = core.lease_left_ms() == 0 or hello.session == core.session
-        if free and hello.session != core.session:
-            core.session = hello.session
-            core.link.reset(core.link.decoder.seed)
-            core.reports.period_ms = 0
-        identity = messages.IDENTITY.pack(
-            session=hello.session, boot=core.boot, dictionary_crc=core.link.decoder.seed,
-            dictionary_bytes=len(core.dictionary), version=frames.VERSION, state=core.state,
-            role=messages.HOLDER if free else messages.VIEWER, firmware=core.version,
-        )  # fmt: skip
-        core.link.post(messages.IDENTITY.number, identity)
-
-    def _dictionary(self, asked) -> None:
-        page = self._core.dictionary[asked.offset : asked.offset + PAGE]
-        payload = messages.DICTIONARY_PAGE.pack(offset=asked.offset, text=page)
-        self._core.link.post(messages.DICTIONARY_PAGE.number, payload)
 
     def _arm(self, order, seq: int) -> None:
         core = self._core
@@ -134,40 +100,18 @@ class Commands:
 
     def _program(self, order, seq: int) -> None:
         self._not_running()
-        try:
-            header = program.read_header(order.header)
-        except program.BadProgram:
-            raise Refused(codes.BAD_HEADER) from None
-        if header.robot_crc != self._core.profile.crc:
-            raise Refused(codes.OTHER_ROBOT)
-        if header.length > self._core.profile.program_bytes_max:
-            raise Refused(codes.TOO_LARGE, 255, header.length, self._core.profile.program_bytes_max)
-        self._header = header
-        self._code = bytearray(header.length)
+        self.upload.begin(order.header)
 
     def _piece(self, order, seq: int) -> None:
         self._not_running()
-        end = order.offset + len(order.code)
-        if self._header is None:
-            raise Refused(codes.NO_PROGRAM)
-        if end > len(self._code):
-            raise Refused(codes.TOO_LARGE, 255, end, len(self._code))
-        self._code[order.offset : end] = order.code
+        self.upload.piece(order.offset, order.code)
 
-    def _start(self, order, seq: int) -> None:
-        core = self._core
+    def _start(self, order, seq: int) -> bool:
+        """Have the program verified; the answer follows when it is."""
         self._not_running()
         self._armed()
-        if self._header is None:
-            raise Refused(codes.NO_PROGRAM)
-        if crc32(self._code) != self._header.crc:
-            raise Refused(codes.BAD_CODE, 255, len(self._code))
-        try:
-            program.check_code(self._code, core.channels.count, core.profile.program_bytes_max)
-        except program.BadProgram as bad:
-            raise Refused(codes.BAD_CODE, 255, bad.at) from None
-        self.outlives_host = self._header.flags & program.OUTLIVES_HOST != 0
-        core.start(self._code)
+        self.upload.verify(seq)
+        return True
 
     def _cancel(self, order, seq: int) -> None:
         if self._core.state == messages.RUNNING:
@@ -183,15 +127,17 @@ class Commands:
             raise Refused(codes.TRIPPED, 255, self._core.code)
 
     def _not_running(self) -> None:
-        if self._core.state == messages.RUNNING:
+        if self._core.state == messages.RUNNING or self.upload.request >= 0:
             raise Refused(codes.BUSY)
+
+    def _refuse(self, request: int, refused: Refused) -> None:
+        self._answer(
+            messages.REFUSED, request=request, code=refused.code, channel=refused.channel,
+            value=min(refused.value, FIGURE_MAX), limit=min(refused.limit, FIGURE_MAX),
+        )  # fmt: skip
 
     def _answer(self, message, **fields) -> None:
         """Send an answer; a host that acknowledges nothing goes without."""
         link = self._core.link
         if link.room():
             link.send(message.number, message.pack(**fields), self._core.now_ms)
-
-    def _nak(self, kind: int, code: int) -> None:
-        payload = messages.NAK.pack(kind=kind, code=code, version=frames.VERSION)
-        self._core.link.post(messages.NAK.number, payload)

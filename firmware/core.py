@@ -8,33 +8,36 @@ from binascii import crc32
 
 from firmware.channels import Channels, Refused
 from firmware.commands import Commands
+from firmware.greetings import Greetings
 from firmware.guard import Guard
 from firmware.player import FINISHED, GUARDED, TIMED_OUT, Player
 from firmware.reports import Reports
 from firmware.sense import Sense
 from protocol import codes, messages
-from protocol.frames import StopFinder
+from protocol.frames import UNSEEDED_BELOW, StopFinder
 from protocol.link import Link
 
 VERSION = b"0.1.0"
 CHECK_EVERY = 64  # control steps between two looks at the chips' settings
+UPTIME_MAX_MS = 1 << 29  # six days; a board's small integers end at 2**30
 
 
 class Core:
     """One robot. `board` gives pins and chips, `profile` labels and limits, `boot` names this start."""
 
-    def __init__(self, board, profile, boot: int, after_watchdog: bool = False) -> None:
+    def __init__(self, board, profile, boot: int, after_reset: bool = False) -> None:
         self.board = board
         self.profile = profile
         self.boot = boot
         self.dictionary = messages.dictionary(profile.text)
         self.state = messages.BOOT
         self.version = VERSION
-        self.code = codes.WATCHDOG if after_watchdog else 0
+        self.code = 0  # of the last fault
         self.overruns = 0
         self.session = 0
         self.lease_ms = 0  # of the session that armed
         self.now_ms = 0
+        self._after_reset = after_reset
         chips = _chips(board, profile)
         self.monitor = board.monitor(profile.supply.shunt_mohm)
         outputs = [(chips[channel.chip], channel.output) for channel in profile.channels]
@@ -43,13 +46,14 @@ class Core:
         self.guard = Guard(profile, self.sense, self.channels, board)
         self.player = Player(self.channels, self.sense)
         self.commands = Commands(self)
+        self.greetings = Greetings(self)
         self.link = Link(crc32(self.dictionary))
         self.reports = Reports(self)
         self._chips = list(chips.values())
         self._stop = StopFinder()
         self._turn = 0
 
-    def step(self, now_ms: int, data: bytes, room: int = 512) -> bytes:
+    def step(self, now_ms: int, data: bytes, room: int) -> bytes:
         """Take the bytes that arrived, run one control step, and return the bytes to send: at most `room`."""
         self.now_ms = now_ms
         if self.state == messages.BOOT:
@@ -57,6 +61,7 @@ class Core:
         if data:
             self._receive(data)
         self._lease()
+        self.commands.go_on()
         code = self._controlled()
         if code:
             self.trip(code, self.guard.channel, self.guard.value)
@@ -94,6 +99,7 @@ class Core:
         if self.state in (messages.ARMED, messages.RUNNING):
             self.state = messages.IDLE
             self.reports.event(messages.DISARMED, code, 255, value)
+            self.player.step = 0
         self.lease_ms = 0
 
     def trip(self, code: int, channel: int = 255, value: int = 0) -> None:
@@ -104,6 +110,7 @@ class Core:
             self.state = messages.TRIPPED
             self.lease_ms = 0
             self.reports.event(messages.TRIP, code, channel, value)
+            self.player.step = 0
 
     def clear(self) -> bool:
         """Leave the tripped state; False when the cause is still there."""
@@ -129,6 +136,18 @@ class Core:
         self.channels.all_off(self.now_ms)
         self.state = messages.ARMED
         self.reports.event(event, code, 255, value)
+        self.player.step = 0
+
+    def take_session(self, session: int) -> None:
+        """Give the link to a new session; it holds no lease, so that what the last one armed ends now."""
+        self.session = session
+        self.lease_ms = 0
+        self.link.reset(self.link.decoder.seed)
+        self.reports.period_ms = 0
+
+    def may_restart(self) -> bool:
+        """Return whether the clock should begin anew: it would outgrow small integers, and nobody is at work."""
+        return self.now_ms > UPTIME_MAX_MS and self.state == messages.IDLE
 
     def lease_left_ms(self) -> int:
         """Return what is left of the lease, 0 when nobody holds it."""
@@ -140,10 +159,10 @@ class Core:
         self.state = messages.IDLE
         try:
             self._begin_chips()
-            self.sense.begin(self.now_ms)
+            self.sense.begin(self.now_ms, self._after_reset)
         except OSError:
             self.trip(codes.CHIP)
-        if self.code == codes.WATCHDOG:
+        if self._after_reset:
             self.trip(codes.WATCHDOG)
 
     def _begin_chips(self) -> None:
@@ -158,14 +177,17 @@ class Core:
         if self._stop.feed(data):
             coils = self.channels.on_mask
             self.trip(codes.STOP)
-            self.commands.stopped(coils)
+            self.greetings.stopped(coils)
         for received in self.link.receive(data, self.now_ms):
-            self.commands.serve(received)
+            if received.kind < UNSEEDED_BELOW:
+                self.greetings.serve(received)
+            else:
+                self.commands.serve(received)
 
     def _lease(self) -> None:
         if self.state not in (messages.ARMED, messages.RUNNING) or self.lease_left_ms():
             return
-        if not (self.state == messages.RUNNING and self.commands.outlives_host):
+        if not (self.state == messages.RUNNING and self.commands.upload.outlives_host):
             self.disarm(codes.LEASE_EXPIRED, self.lease_ms)
 
     def _controlled(self) -> int:

@@ -4,12 +4,11 @@ Checked on every control step, none of them can be turned off over the wire. Ind
 order's own end (channels), the lease (core) and the hardware behind the heartbeat (board).
 """
 
+from firmware.sense import BOARD_MAX_DECIDEGC, BOARD_MIN_DECIDEGC
 from protocol import codes
 
 SETTLE_MS = 100  # readings are averages: a condition must last this long before it is believed
 STRAY_MA = 25
-BOARD_MAX_DECIDEGC = 850
-BOARD_MIN_DECIDEGC = -200
 
 
 class Guard:
@@ -37,7 +36,10 @@ class Guard:
             return self._fault(codes.SENSOR, sense.board_decidegc)
         if self._stray(now_ms):
             return self._fault(codes.STRAY_CURRENT, sense.current_ma)
+        if sense.supply_mv > self._supply.high_mv:
+            return self._fault(codes.SUPPLY_HIGH, sense.supply_mv)
         if not powered:
+            self._low_since_ms = now_ms
             return 0
         if sense.current_ma > self._supply.current_max_ma:
             return self._fault(codes.OVER_CURRENT, sense.current_ma)

@@ -12,7 +12,7 @@ STEP_MS = 5
 
 
 def run() -> None:
-    """Serve for ever; any error switches the coils off and restarts the firmware."""
+    """Serve for ever. An error opens the coil supply and is left to the watchdog, which restarts the firmware."""
     board = pico.Board()
     try:
         with open("robot.json", "rb") as file:
@@ -24,11 +24,11 @@ def run() -> None:
 
 
 def loop(board: pico.Board, core: Core) -> None:
-    """Step the core at its period; a step that comes late is counted, not caught up."""
+    """Step the core at its period until its clock must begin anew; a late step is counted, not caught up."""
     now_ms = 0
     last = time.ticks_ms()
     due = last
-    while True:
+    while not core.may_restart():
         board.write(core.step(now_ms, board.read(), board.room()))
         board.feed()
         due = time.ticks_add(due, STEP_MS)

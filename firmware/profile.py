@@ -65,4 +65,5 @@ class Supply:
         self.current_max_ma = data["current_max_ma"]
         self.at_once_max = data["at_once_max"]
         self.low_mv = data["low_mv"]
+        self.high_mv = data["high_mv"]
         self.shunt_mohm = data["shunt_mohm"]

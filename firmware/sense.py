@@ -7,6 +7,9 @@ budget is the energy taken, leaking away with its own time constant. All integer
 
 from array import array
 
+BOARD_MIN_DECIDEGC = -200  # what a thermistor in order reads on a board in use
+BOARD_MAX_DECIDEGC = 850
+
 
 class Sense:
     """Readings of the chips and the estimate for every coil."""
@@ -14,7 +17,8 @@ class Sense:
     def __init__(self, board, monitor, count: int, profile) -> None:
         self.supply_mv = 0
         self.current_ma = 0
-        self.board_decidegc = 250
+        self.board_decidegc = 250  # as read: the guard judges it
+        self._ambient_decidegc = 250  # the last reading that can be
         self.temperature_millidegc = array("i", [25_000] * count)
         self.heat_uj = array("i", [0] * count)  # taken and not yet leaked away
         self.hottest = -1  # among the coils that are on, the one with the highest estimate; -1: none is on
@@ -36,21 +40,26 @@ class Sense:
         if self._turn & 1:
             self.current_ma = self._monitor.current_ma()
         elif self._turn == 0:
-            self.board_decidegc = self._board.board_decidegc()
+            self._read_board()
         elif self._turn & 2:
             self._read_supply()
 
-    def begin(self, now_ms: int) -> None:
-        """Read everything once and take all coils as being at the board's temperature."""
+    def begin(self, now_ms: int, after_reset: bool) -> None:
+        """Read everything once and take all coils as cold, or, after a reset that forgot them, as hot as may be."""
         self.begin_supply()
+        coil = self._coil
         for channel in range(self._count):
-            self.temperature_millidegc[channel] = self.board_decidegc * 100
             self._seen_ms[channel] = now_ms
+            self.temperature_millidegc[channel] = self._ambient_decidegc * 100
+            if after_reset:
+                self.temperature_millidegc[channel] = coil.trip_decidegc * 100
+                self.heat_uj[channel] = coil.heat_budget_mj * 1000
+                self._martensite_permille[channel] = 0
 
     def begin_supply(self) -> None:
         """Read every sensor now; OSError when the monitor does not answer."""
         self.current_ma = self._monitor.current_ma()
-        self.board_decidegc = self._board.board_decidegc()
+        self._read_board()
         self._read_supply()
 
     def update(self, now_ms: int, on_mask: int, duty_permille: array) -> None:
@@ -66,7 +75,7 @@ class Sense:
         while on_mask:
             if on_mask & 1:
                 self._catch_up(channel, self._updated_ms, 0)  # it was off until then, or is up to date
-                self._catch_up(channel, now_ms, self._full_uw * duty_permille[channel] // 1000)
+                self._catch_up(channel, now_ms, self._full_uw // 10 * duty_permille[channel] // 100)
                 self._rank(channel)
             on_mask >>= 1
             channel += 1
@@ -84,6 +93,11 @@ class Sense:
         if self.fullest < 0 or self.heat_uj[channel] > self.heat_uj[self.fullest]:
             self.fullest = channel
 
+    def _read_board(self) -> None:
+        self.board_decidegc = self._board.board_decidegc()
+        if BOARD_MIN_DECIDEGC <= self.board_decidegc <= BOARD_MAX_DECIDEGC:
+            self._ambient_decidegc = self.board_decidegc
+
     def _read_supply(self) -> None:
         self.supply_mv = self._monitor.voltage_mv()
         self._full_uw = full_power_uw(self.supply_mv, self._coil.resistance_mohm, self._coil.wiring_mohm)
@@ -95,7 +109,7 @@ class Sense:
         heat_uj += power_uw * passed_ms // 1000 - heat_uj * passed_ms // coil.heat_leak_ms
         self.heat_uj[channel] = heat_uj if heat_uj > 0 else 0
         t = self.temperature_millidegc[channel]
-        loss_uw = (t // 100 - self.board_decidegc) * coil.loss_uw_per_k // 10
+        loss_uw = (t // 100 - self._ambient_decidegc) * coil.loss_uw_per_k // 10
         energy_nj = (power_uw - loss_uw) * passed_ms + self._rest_nj[channel]
         capacity = coil.heat_capacity_uj_per_k + self._latent_uj_per_k(channel, t, energy_nj)
         moved = energy_nj // capacity

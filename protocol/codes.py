@@ -11,10 +11,10 @@ Code = namedtuple("Code", ("number", "name", "unit", "cause", "did", "todo"))
 NOT_ARMED, TRIPPED, UNKNOWN_CHANNEL, DUTY_LIMIT, HOLD_LIMIT, LEASE_HELD = 1, 2, 3, 4, 5, 6
 AT_ONCE_LIMIT, RESTING, BAD_PAYLOAD, UNKNOWN_MESSAGE, BAD_HEADER, OTHER_ROBOT = 7, 8, 9, 10, 11, 12
 TOO_LARGE, BAD_CODE, BUSY, NO_PROGRAM, LEASE_LIMIT, CAUSE_REMAINS = 13, 14, 15, 16, 17, 18
-OTHER_VERSION, UNFIT = 19, 20
+OTHER_VERSION = 19
 STOP, ESTOP, LEASE_EXPIRED, HEAT_BUDGET, OVER_TEMPERATURE, OVER_CURRENT = 101, 102, 103, 104, 105, 106
 SUPPLY_LOW, CHIP, SENSOR, GUARD, WAIT_TIMEOUT, WATCHDOG = 107, 108, 109, 110, 111, 112
-STRAY_CURRENT, ON_TOO_LONG, REFUSED_STEP = 113, 114, 115
+STRAY_CURRENT, ON_TOO_LONG, REFUSED_STEP, SUPPLY_HIGH = 113, 114, 115, 116
 
 NOTHING = "Nothing changed."
 ALL_OFF = "All coils off, latched until clear."
@@ -135,12 +135,6 @@ CODES = (
         "Update the older of the two.",
     ),
     Code(
-        UNFIT, "R20", "",
-        "The robot failed its self-test.",
-        NOTHING,
-        "`softrig status` names the fault; mend the wiring or the supply.",
-    ),
-    Code(
         STOP, "F01", "",
         "A stop was received.",
         ALL_OFF,
@@ -208,7 +202,7 @@ CODES = (
     ),
     Code(
         WATCHDOG, "F12", "",
-        "The firmware hung and was restarted.",
+        "The firmware hung, or its clock had run for six days, and it was restarted.",
         "Coils off by hardware, disarmed.",
         "Keep the log and report it.",
     ),
@@ -229,6 +223,12 @@ CODES = (
         "A step of the program asked for what the limits forbid.",
         ALL_OFF,
         "`softrig check` names the line; the event names the limit.",
+    ),
+    Code(
+        SUPPLY_HIGH, "F16", "mV",
+        "The supply voltage is above its limit: the coils would burn.",
+        ALL_OFF,
+        "Set the supply to the robot's own voltage; `softrig info` prints it.",
     ),
 )  # fmt: skip
 

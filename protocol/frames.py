@@ -31,8 +31,11 @@ def seal(kind: int, seq: int, ack: int, payload: bytes, seed: int, flags: int) -
 
 
 def unseal(body: bytes, seed: int) -> Frame | None:
-    """Return the frame of `body`, or None when it is damaged, foreign or of another version."""
-    if not 8 <= len(body) <= BODY_MAX or body[0] >> 4 != VERSION:
+    """Return the frame of `body`, or None when it is damaged or foreign.
+
+    A frame of another version is foreign too, unless it is unseeded: a hello of any version must be answered.
+    """
+    if not 8 <= len(body) <= BODY_MAX or (body[0] >> 4 != VERSION and body[1] >= UNSEEDED_BELOW):
         return None
     if crc32(body[:-4], _seed_of(body[1], seed)) != int.from_bytes(body[-4:], "little"):
         return None

@@ -54,7 +54,7 @@ class Link:
         self.resent = 0
         self.duplicates = 0
         self.missed = 0
-        self.broken = False  # a frame was sent TRIES_MAX times in vain
+        self.broken = False  # a frame was sent TRIES_MAX times in vain; it is still sent again
         self.rtt_ms = None
         self._spread_ms = 0
         self._rto_ms = RTO_FIRST_MS
@@ -84,11 +84,11 @@ class Link:
         self._waiting.append(Waiting(kind, seq, payload))
         return seq
 
-    def post(self, kind: int, payload: bytes) -> None:
-        """Queue a frame that is not resent; the oldest gives way when too many wait."""
+    def post(self, kind: int, payload: bytes, first: bool = False) -> None:
+        """Queue a frame that is not resent, before all others if need be; the oldest gives way when too many wait."""
         if len(self._posts) >= QUEUE_MAX:
             self._posts.pop(0)
-        self._posts.append((kind, payload))
+        self._posts.insert(0 if first else len(self._posts), (kind, payload))
 
     def acknowledge(self) -> None:
         """Have the next `poll` write at least an `alive`."""
@@ -122,9 +122,8 @@ class Link:
         while self._posts and room >= FRAME_MAX:
             out.append(self._posted())
             room -= len(out[-1])
-        if self._ack_due and not out and room >= FRAME_MAX:
+        if self._ack_due and room >= FRAME_MAX:
             out.append(self._line(ALIVE.number, 0, b"", 0))
-        self._ack_due = self._ack_due and not out
         return b"".join(out)
 
     def _posted(self) -> bytes:
@@ -178,7 +177,7 @@ class Link:
         if now_ms - waiting.sent_ms < backed_off:
             return False
         self.broken = self.broken or waiting.tries >= TRIES_MAX
-        return not self.broken
+        return True
 
     def _sealed(self, waiting: Waiting, now_ms: int) -> bytes:
         self.resent += waiting.tries > 0
@@ -187,4 +186,6 @@ class Link:
         return self._line(waiting.kind, waiting.seq, waiting.payload, frames.RELIABLE)
 
     def _line(self, kind: int, seq: int, payload: bytes, flags: int) -> bytes:
+        if kind >= frames.UNSEEDED_BELOW:
+            self._ack_due = False  # this frame carries it
         return frames.encode(frames.seal(kind, seq, self._next_receive, payload, self.decoder.seed, flags))

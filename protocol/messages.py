@@ -100,7 +100,8 @@ HELLO = Message(
 IDENTITY = Message(
     0x02, "identity", "Who the robot is; answers `hello`.",
     Field("session", "I", "The session that said hello."),
-    Field("boot", "I", "Number of this start of the firmware: it changes with every reset."),
+    Field("boot", "I", "Number of this start of the firmware; a reset may draw the same again, see uptime_ms."),
+    Field("uptime_ms", "I", "Time since this start: less than the host expects after a reset."),
     Field("dictionary_crc", "I", "CRC-32 of the dictionary text: the seed of all other frames."),
     Field("dictionary_bytes", "H", "Length of the dictionary text."),
     Field("version", "B", "Protocol version of the robot."),

@@ -4,7 +4,7 @@ A program is a 16-byte header and its code. Each op is one byte followed by litt
 bounded, so a program always ends. The robot verifies the whole before it runs any of it.
 
     code = fire(0b1, 1000, 700) + delay(700) + halt()
-    check_code(code, channels=8, bytes_max=8192)
+    check_code(code, channels=8, bytes_max=4096)
 """
 
 from binascii import crc32
@@ -118,26 +118,52 @@ def read_condition(code: bytes, at: int) -> Condition:
 
 
 def check_code(code: bytes, channels: int, bytes_max: int) -> None:
-    """Raise BadProgram unless every op is whole and known, loops nest, and the code ends with HALT.
+    """Raise BadProgram unless the whole code may be run, see Check."""
+    check = Check(code, channels, bytes_max)
+    while not check.go_on(len(code)):
+        pass
 
-    Limits of duty and time are not looked at here: the channels hold every order against them as it runs.
+
+class Check:
+    """Verifies a code piece by piece, so that a control step need not wait for all of it.
+
+    Every op is whole and known, loops nest, guards are few, and the code ends with HALT; else BadProgram. Limits of
+    duty and time are not looked at here: the channels hold every order against them as it runs.
     """
-    if not 0 < len(code) <= bytes_max:
-        raise BadProgram(f"{len(code)} bytes of code, at most {bytes_max}")
-    at = depth = guards = 0
-    op = HALT
-    while at < len(code):
-        op = code[at]
-        if op >= len(SIZES) or at + SIZES[op] > len(code):
+
+    def __init__(self, code: bytes, channels: int, bytes_max: int) -> None:
+        if not 0 < len(code) <= bytes_max:
+            raise BadProgram(f"{len(code)} bytes of code, at most {bytes_max}")
+        self._code = code
+        self._channels = channels
+        self._at = 0
+        self._op = HALT
+        self._depth = 0
+        self._guards = 0
+
+    def go_on(self, ops: int) -> bool:
+        """Look at that many more ops; return whether all has been seen."""
+        for _ in range(ops):
+            if self._at == len(self._code):
+                break
+            self._one()
+        if self._at < len(self._code):
+            return False
+        if self._op != HALT or self._depth or self._guards > GUARDS_MAX:
+            raise BadProgram(f"needs a halt at its end, closed loops and at most {GUARDS_MAX} guards", self._at)
+        return True
+
+    def _one(self) -> None:
+        op, at = self._code[self._at], self._at
+        if op >= len(SIZES) or at + SIZES[op] > len(self._code):
             raise BadProgram(f"op {op} unknown or cut short", at)
-        depth += (op == REPEAT) - (op == NEXT)
-        guards += op == GUARD
-        if depth < 0 or depth > DEPTH_MAX:
-            raise BadProgram(f"loops nested {depth} deep, at most {DEPTH_MAX}", at)
-        _check_arguments(code, at, channels)
-        at += SIZES[op]
-    if op != HALT or depth or guards > GUARDS_MAX:
-        raise BadProgram(f"needs a halt at its end, closed loops and at most {GUARDS_MAX} guards", at)
+        self._depth += (op == REPEAT) - (op == NEXT)
+        self._guards += op == GUARD
+        if self._depth < 0 or self._depth > DEPTH_MAX:
+            raise BadProgram(f"loops nested {self._depth} deep, at most {DEPTH_MAX}", at)
+        _check_arguments(self._code, at, self._channels)
+        self._op = op
+        self._at += SIZES[op]
 
 
 def disassemble(code: bytes) -> list[tuple]:

@@ -126,7 +126,7 @@ class Rig:
             if not silent:
                 self.host.acknowledge()
                 line += self.host.poll(self.now_ms)
-            answer = self.core.step(self.now_ms, line)
+            answer = self.core.step(self.now_ms, line, 1024)
             line = b""
             self.now_ms += 5
             for received in self.host.receive(answer, self.now_ms):

@@ -27,7 +27,7 @@ ROUND = {
         "heat_capacity_uj_per_k": 2000, "loss_uw_per_k": 2000, "latent_uj": 90000,
         "as_degc": 68, "af_degc": 78, "ms_degc": 52, "mf_degc": 42,
     },
-    "supply": {"current_max_ma": 400, "at_once_max": 4, "low_mv": 1500, "shunt_mohm": 100},
+    "supply": {"current_max_ma": 400, "at_once_max": 4, "low_mv": 1500, "high_mv": 2600, "shunt_mohm": 100},
     "session": {"lease_ms": 500, "lease_max_ms": 5000},
     "program": {"bytes_max": 1024, "depth_max": 8, "guards_max": 8},
 }  # fmt: skip

@@ -144,7 +144,7 @@ def session(core, profile):
             line = host.poll(now_ms)
         if now_ms == 3600:
             line += STOP
-        answer = core.step(now_ms, line)
+        answer = core.step(now_ms, line, 1024)
         host.receive(answer, now_ms)
         for row in told:
             print(now_ms, *row)

@@ -1,5 +1,7 @@
 """The core alone: states, lease, refusals and faults, in CPython on a table top of remembering chips."""
 
+from binascii import crc32
+
 import pytest
 
 from firmware.core import Core
@@ -349,10 +351,15 @@ def test_unknown_and_misshapen_messages_are_refused_not_raised(rig):
     assert [body.code for name, body in answers if name == "nak"] == [codes.UNKNOWN_MESSAGE, codes.BAD_PAYLOAD]
 
 
-def test_a_host_of_another_version_is_told_so(rig):
-    ((name, nak),) = rig.say(messages.HELLO, version=2, session=5)
+def test_a_hello_of_another_version_is_told_so_whatever_it_carries(rig):
+    """The frame says version 2 in its head, and its payload is longer than ours."""
+    body = bytes((0x20, messages.HELLO.number, 0, 0)) + bytes((2, 1, 2, 3, 4, 5, 6, 7))
+    answer = rig.core.step(rig.now_ms, encode(body + crc32(body).to_bytes(4, "little")), 1024)
 
-    assert (name, nak.code, nak.version) == ("nak", codes.OTHER_VERSION, 1)
+    ((kind, _, payload),) = rig.host.receive(answer, 0)
+
+    nak = messages.NAK.unpack(payload)
+    assert (kind, nak.code, nak.version) == (messages.NAK.number, codes.OTHER_VERSION, 1)
 
 
 def test_telemetry_comes_at_its_period_with_every_channel(rig):
@@ -369,8 +376,8 @@ def test_telemetry_comes_at_its_period_with_every_channel(rig):
 
 def test_after_a_watchdog_reset_it_stays_tripped_until_cleared():
     rig = Rig()
-    core = Core(Table(), rig.profile, boot=2, after_watchdog=True)
-    core.step(0, b"")
+    core = Core(Table(), rig.profile, boot=2, after_reset=True)
+    core.step(0, b"", 1024)
 
     assert (core.state, core.code) == (messages.TRIPPED, codes.WATCHDOG)
 
@@ -408,7 +415,7 @@ def test_a_host_that_acknowledges_nothing_goes_without_answers(rig):
 
     for number in range(200):
         body = seal(messages.FIRE.number, (number + 1) & 255, 0, b"", rig.host.decoder.seed, RELIABLE)
-        rig.core.step(rig.now_ms, encode(body))
+        rig.core.step(rig.now_ms, encode(body), 1024)
         rig.now_ms += 5
 
     assert rig.core.state == messages.ARMED
@@ -444,3 +451,112 @@ def test_what_has_transformed_takes_no_latent_heat_a_second_time(rig):
     sensible_ms = (75 - 60) * rig.profile.coil.heat_capacity_uj_per_k // 380
     assert first_ms > 400
     assert second_ms < 2 * sensible_ms
+
+
+def test_its_own_words_coming_back_are_not_answered(rig):
+    """A loopback plug, or a line that echoes, must not make the robot talk to itself for ever."""
+    rig.host.post(0x0E, b"")
+    echo = rig.core.step(rig.now_ms, rig.host.poll(0), 1024)
+    assert echo
+
+    again = rig.core.step(rig.now_ms + 5, echo, 1024)
+
+    assert again == b""
+
+
+def test_a_reset_that_forgot_the_heat_takes_every_coil_as_hot():
+    rig = Rig()
+    core = Core(rig.board, rig.profile, boot=2, after_reset=True)
+    core.step(0, b"", 1024)
+
+    assert min(core.sense.temperature_millidegc) > 115_000
+    for now_ms in range(5, 20_000, 5):
+        core.step(now_ms, b"", 1024)
+    assert max(core.sense.temperature_millidegc) < 30_000
+
+
+def test_a_broken_thermistor_does_not_spoil_the_estimates(rig):
+    rig.arm()
+    rig.fire(1, duty_permille=1000, hold_ms=500)
+    rig.run(500)
+    before = rig.core.sense.temperature_millidegc[0]
+
+    rig.board.decidegc = -9999
+    rig.run(330)
+
+    assert rig.core.code == codes.SENSOR
+    assert 45_000 < rig.core.sense.temperature_millidegc[0] < before
+
+
+def test_a_supply_that_is_too_high_is_never_let_onto_the_coils(rig):
+    rig.board.supply.mv = 5000
+    rig.run(400)
+
+    assert rig.core.code == codes.SUPPLY_HIGH
+    assert refusal(rig.arm()).code == codes.TRIPPED
+
+
+def test_a_supply_that_was_low_while_it_was_off_does_not_trip_the_arming(rig):
+    rig.board.supply.mv = 0
+    rig.run(400)
+    rig.arm()
+    rig.board.supply.mv = 2000
+
+    rig.run(80)
+
+    assert rig.core.state == messages.ARMED
+
+
+def test_a_new_session_inherits_no_arming_from_a_program_that_outlived_its_host(rig):
+    run_program(rig, program.fire(1, 300, 2000) + program.halt(), flags=program.OUTLIVES_HOST)
+    rig.run(600, silent=True)
+
+    rig.host.reset(rig.core.link.decoder.seed)
+    rig.host.post(messages.HELLO.number, messages.HELLO.pack(version=1, session=78))
+    rig.run(10, silent=True, line=rig.host.poll(rig.now_ms))
+    rig.run(3000)
+
+    assert rig.board.chip.duty_permille[0] == 0
+    assert refusal(rig.fire(1)).code == codes.NOT_ARMED
+
+
+def test_a_long_program_is_verified_in_pieces_and_then_started(rig):
+    code = program.delay(1) * 400 + program.halt()
+    run_program(rig, code)
+    assert not rig.events("started")
+
+    answers = rig.run(100)
+
+    assert rig.events("started")
+    assert [name for name, _ in answers].count("ok") == 1
+
+
+def test_a_program_that_waits_for_its_verification_dies_with_the_arming(rig):
+    code = program.delay(1) * 400 + program.halt()
+    rig.upload(code, program.header(code, rig.profile.crc))
+    rig.arm()
+    rig.host.send(messages.START.number, messages.START.pack(), rig.now_ms)
+    rig.host.send(messages.DISARM.number, messages.DISARM.pack(), rig.now_ms)
+
+    answers = rig.run(200)
+
+    assert refusal(answers).code == codes.NOT_ARMED
+    assert not rig.events("started")
+
+
+def test_the_clock_begins_anew_only_when_nobody_is_at_work(rig):
+    rig.core.now_ms = (1 << 29) + 1
+
+    assert rig.core.may_restart()
+    rig.core.state = messages.ARMED
+    assert not rig.core.may_restart()
+
+
+def test_after_the_end_of_a_program_no_step_is_told(rig):
+    run_program(rig, program.step(7) + program.fire(1, 300, 50) + program.halt())
+    rig.run(100)
+
+    status = next(body for name, body in rig.say(messages.STATUS_REQUEST) if name == "status")
+
+    assert rig.events("finished")[0].step == 7
+    assert status.step == 0

@@ -48,7 +48,7 @@ class Bare:
         self.sense = Sense(board, board.supply, 8, profile)
         self.player = Player(self.channels, self.sense)
         self.on_ms, self.heat_uj, self.at_once, self.too_long = [0] * 8, [0] * 8, 0, -1
-        self.sense.begin(0)
+        self.sense.begin(0, after_reset=False)
         self.player.load(code, 0)
         self.now_ms = 0
 

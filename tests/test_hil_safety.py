@@ -6,7 +6,9 @@ Times are those at which the coil's current stopped on the bench, after outputs,
 import pytest
 
 from host.errors import Refused, SoftrigError
-from protocol import frames
+from host.robot import Robot
+from host.run import run
+from protocol import frames, program
 from protocol.messages import DICTIONARY
 
 STEP_S = 0.005
@@ -170,3 +172,44 @@ def test_a_flood_of_requests_is_answered_in_whole_frames_and_makes_no_step_late(
     assert status.overruns == 0
     assert rig.robot.statistics()["frames_damaged"] == 0
     assert rig.coil("A").off_at_s - rig.coil("A").on_at_s == pytest.approx(1.0, abs=STEP_S)
+
+
+def test_after_its_program_ended_no_coil_is_on_and_the_supply_is_open(rig):
+    code = program.fire(0b11, 300, 200) + program.delay(200) + program.halt()
+
+    run(rig.robot, program.header(code, rig.robot.profile.crc) + code, lambda stage, done: None)
+
+    assert not rig.bench.any_coil_on
+    assert not rig.bench.board.powered
+    assert rig.robot.status().state == "idle"
+
+
+def test_a_bus_held_low_is_told_also_after_a_reset(rig):
+    """Each transfer on a stuck bus costs its time-out; the watchdog must still be fed and the fault told."""
+    rig.fire("A", duty_percent=60, hold_s=5)
+    rig.happens("bus-stuck")
+    rig.happens("reset")
+    rig.run_alone(seconds=3)
+    resets = rig.bench.world.resets
+
+    again = Robot(rig.link)
+    again.connect()
+
+    assert again.status().state == "tripped"
+    assert rig.bench.world.resets == resets == 1
+
+
+def test_bursts_with_a_reset_between_them_cannot_burn_a_coil(rig):
+    """What a reset forgets it takes for hot."""
+    for _ in range(4):
+        robot = Robot(rig.link)
+        robot.connect()
+        if robot.status().state == "tripped":
+            robot.clear()
+        robot.arm()
+        robot.fire(["A"], 1000, 1000)
+        rig.run_alone(seconds=1.0)
+        rig.happens("reset")
+        rig.run_alone(seconds=0.1)
+
+    assert rig.bench.coil("A").peak_degc < 135

@@ -1,6 +1,7 @@
 """Bytes on the wire, frozen: made by hand from the rules on the protocol page, not by the codec they test."""
 
 import random
+from binascii import crc32
 
 import pytest
 from hypothesis import given
@@ -88,11 +89,14 @@ def test_hello_is_taken_whatever_the_dictionary():
     assert len(frames.Decoder(SEED + 1).feed(line(kind=0x01))) == 1
 
 
-def test_a_frame_of_another_version_is_not_taken():
-    body = bytearray(frames.seal(0x14, 0, 0, b"", SEED, 0))
+@pytest.mark.parametrize(("kind", "taken"), [(0x01, True), (0x14, False)])
+def test_of_another_version_only_unseeded_frames_are_taken(kind, taken):
+    """A hello of any version must be answered; an order of another version must never be understood."""
+    body = bytearray(frames.seal(kind, 0, 0, b"", SEED, 0))[:-4]
     body[0] = 0x20
+    sealed = bytes(body) + crc32(bytes(body), 0 if kind < 0x10 else SEED).to_bytes(4, "little")
 
-    assert frames.unseal(bytes(body), SEED) is None
+    assert (frames.unseal(sealed, SEED) is not None) == taken
 
 
 def test_a_payload_that_is_too_long_is_refused_with_its_limit():

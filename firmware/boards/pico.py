@@ -27,7 +27,7 @@ class Board:
         self._heartbeat = Pin(3, Pin.OUT, value=0)
         self._estop = Pin(6, Pin.IN, Pin.PULL_DOWN)
         self._beat = 0
-        self._bus = I2C(0, scl=Pin(5), sda=Pin(4), freq=400_000)
+        self._bus = I2C(0, scl=Pin(5), sda=Pin(4), freq=400_000, timeout=1000)
         self._uart = UART(0, baudrate=BAUD, tx=Pin(0), rx=Pin(1), txbuf=BUFFER_BYTES, rxbuf=BUFFER_BYTES)
         self._backlog = 0  # bytes that the line has not sent yet, at most
         self._thermistor = ADC(Pin(26))

@@ -31,7 +31,7 @@ class Ina226:
 
     def voltage_mv(self) -> int:
         """Return the mean voltage of the last conversion."""
-        return self._read(BUS_VOLTAGE) * 5 >> 2
+        return (self._read(BUS_VOLTAGE) & 0x7FFF) * 5 >> 2
 
     def _write(self, register: int, value: int) -> None:
         self._word[0] = value >> 8

@@ -33,7 +33,7 @@ class Bus:
 
     def __init__(self, chips: Iterable[Chip] = ()) -> None:
         self.chips = list(chips)
-        self.stuck = False  # SDA held low: nothing is acknowledged any more
+        self.stuck = False  # SCL held low: no transfer ends before its time-out
 
     def at(self, address: int) -> list[Chip]:
         """Return the chips that acknowledge this address."""

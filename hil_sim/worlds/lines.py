@@ -15,7 +15,7 @@ Buffer = bytearray | memoryview
 
 
 class I2C:
-    """A bus; a transfer that is not acknowledged raises OSError(5, "EIO")."""
+    """A bus; no acknowledgement is OSError(5, "EIO"), a line held low OSError(110, "ETIMEDOUT") after a time."""
 
     _processor: ClassVar[Processor]
 
@@ -28,6 +28,7 @@ class I2C:
             if number % 4 != 2 * id + rest:
                 raise ValueError(f"bad {name} pin")
         self._freq = freq
+        self._timeout_us = timeout
         wired = (sda_number, scl_number) == (SDA, SCL)
         self._bus = self._processor.board.bus if wired else Bus()
 
@@ -67,6 +68,9 @@ class I2C:
 
     def _begin(self, addr: int, byte_count: int) -> list[i2c.Chip]:
         """Spend the time of the transfer and return who answers; of the address alone when nobody does."""
+        if self._bus.stuck:
+            self._processor.spend(self._timeout_us)
+            raise OSError(110, "ETIMEDOUT")
         chips = self._bus.at(addr)
         self._processor.spend(bus_time_us(byte_count if chips else 1, self._freq))
         if not chips:

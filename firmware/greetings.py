@@ -1,0 +1,61 @@
+"""What strangers may say: hello, questions for the dictionary, and the words that answer a stop.
+
+These frames are unseeded, so that a host of any version and any dictionary is answered. Answers are never answered:
+a line that echoes stays quiet.
+"""
+
+from protocol import codes, frames, messages
+
+PAGE = 200  # bytes of dictionary text in an answer
+
+
+class Greetings:
+    """Serves unseeded frames for one core."""
+
+    def __init__(self, core) -> None:
+        self._core = core
+
+    def serve(self, received) -> None:
+        """Serve one unseeded frame."""
+        try:
+            if received.kind == messages.HELLO.number:
+                self._hello(received.payload)
+            elif received.kind == messages.DICTIONARY.number:
+                self._dictionary(messages.DICTIONARY.unpack(received.payload))
+            elif received.kind > messages.NAK.number:
+                self._nak(received.kind, codes.UNKNOWN_MESSAGE)
+        except ValueError:
+            self._nak(received.kind, codes.BAD_PAYLOAD)
+
+    def stopped(self, coils: int) -> None:
+        """Say, before all else, that the stop pattern arrived and every coil is off."""
+        core = self._core
+        now = core.now_ms & 0xFFFFFFFF
+        payload = messages.STOPPED.pack(state=core.state, code=core.code, coils=coils, now_ms=now)
+        core.link.post(messages.STOPPED.number, payload, first=True)
+
+    def _hello(self, payload: bytes) -> None:
+        """Answer a hello; its first byte is the version, in every version."""
+        core = self._core
+        if payload and payload[0] != frames.VERSION:
+            self._nak(messages.HELLO.number, codes.OTHER_VERSION)
+            return
+        hello = messages.HELLO.unpack(payload)
+        free = core.lease_left_ms() == 0 or hello.session == core.session
+        if free and hello.session != core.session:
+            core.take_session(hello.session)
+        identity = messages.IDENTITY.pack(
+            session=hello.session, boot=core.boot, uptime_ms=core.now_ms & 0xFFFFFFFF,
+            dictionary_crc=core.link.decoder.seed, dictionary_bytes=len(core.dictionary), version=frames.VERSION,
+            state=core.state, role=messages.HOLDER if free else messages.VIEWER, firmware=core.version,
+        )  # fmt: skip
+        core.link.post(messages.IDENTITY.number, identity)
+
+    def _dictionary(self, asked) -> None:
+        page = self._core.dictionary[asked.offset : asked.offset + PAGE]
+        payload = messages.DICTIONARY_PAGE.pack(offset=asked.offset, text=page)
+        self._core.link.post(messages.DICTIONARY_PAGE.number, payload)
+
+    def _nak(self, kind: int, code: int) -> None:
+        payload = messages.NAK.pack(kind=kind, code=code, version=frames.VERSION)
+        self._core.link.post(messages.NAK.number, payload)
