@@ -16,7 +16,6 @@ from firmware.drivers.pca9685 import Pca9685
 WATCHDOG_MS = 200
 BAUD = 115_200
 BUFFER_BYTES = 512
-BYTES_PER_STEP = BAUD // 10 * 5 // 1000  # that leave the line in a control step
 
 
 class Board:
@@ -29,7 +28,7 @@ class Board:
         self._beat = 0
         self._bus = I2C(0, scl=Pin(5), sda=Pin(4), freq=400_000, timeout=1000)
         self._uart = UART(0, baudrate=BAUD, tx=Pin(0), rx=Pin(1), txbuf=BUFFER_BYTES, rxbuf=BUFFER_BYTES)
-        self._backlog = 0  # bytes that the line has not sent yet, at most
+        self._quiet_ms = time.ticks_ms()  # when the line will have sent all that was written
         self._thermistor = ADC(Pin(26))
         self._watchdog = WDT(timeout=WATCHDOG_MS)
 
@@ -63,14 +62,16 @@ class Board:
         return self._uart.read() or b""
 
     def room(self) -> int:
-        """Return how many bytes `write` takes now; call once a control step."""
-        self._backlog = max(0, self._backlog - BYTES_PER_STEP)
-        return BUFFER_BYTES - self._backlog
+        """Return how many bytes `write` takes now."""
+        busy_ms = max(0, time.ticks_diff(self._quiet_ms, time.ticks_ms()))
+        return BUFFER_BYTES - busy_ms * BAUD // 10_000
 
     def write(self, data: bytes) -> None:
         """Send bytes to the host; what is more than `room` would be lost."""
         if data:
-            self._backlog += len(data)
+            now_ms = time.ticks_ms()
+            begin_ms = self._quiet_ms if time.ticks_diff(self._quiet_ms, now_ms) > 0 else now_ms
+            self._quiet_ms = time.ticks_add(begin_ms, 1 + len(data) * 10_000 // BAUD)
             self._uart.write(data)
 
     def feed(self) -> None:
