@@ -251,13 +251,13 @@ class Robot:
             data = self.link.read((wake_ms if until_ms is None else min(wake_ms, until_ms)) / 1000)
         except OSError as error:
             raise LinkLost(f"the line broke ({error}); the robot switches its coils off by itself") from error
+        now_ms = self.now_ms()
+        news = self._session.receive(data, now_ms)
         if data:
-            now_ms = self.now_ms()
-            news = self._session.receive(data, now_ms)
             self._keep("in", data, now_ms)
-            self._news += news
-            for record in news:
-                self._noticed(record)
+        self._news += news
+        for record in news:
+            self._noticed(record)
 
     def _noticed(self, record: Record) -> None:
         if isinstance(record, Stopped):

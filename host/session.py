@@ -10,7 +10,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from host.errors import (
     BadRequest,
@@ -25,7 +25,18 @@ from host.errors import (
 )
 from host.handshake import Handshake, differing_lines, profile_text
 from host.profile import Profile, read_profile
-from host.records import Record, Status, Telemetry, event_of, status_of, stopped_of, telemetry_of
+from host.records import (
+    Event,
+    Record,
+    Status,
+    Telemetry,
+    event_of,
+    state_name,
+    status_of,
+    stopped_of,
+    telemetry_of,
+)
+from host.robotclock import RobotClock, since
 from protocol import codes, frames, messages
 from protocol.link import Link
 
@@ -33,8 +44,17 @@ KEEPALIVE_MS = 100
 STOP_AGAIN_MS = 100
 TICK_MS = 20  # while something waits to be acknowledged
 IDLE_TICK_MS = 250
+LATE_MS = 500  # between the making of a frame and its arrival on a line that is read
+SLACK_MS = 50  # between a question and the time told in its answer, should the clocks be read unluckily
 PROBE_MS = 500  # of silence, where there should be none, before hello is said again
 SILENT_MS = 2000
+
+
+class Asked(NamedTuple):
+    """An order that waits for its answer."""
+
+    name: str
+    at_ms: int
 
 
 class Session:
@@ -46,16 +66,19 @@ class Session:
         self.dictionary = b""
         self.answers: dict[int, Refused | Status | None] = {}
         self.holds_lease = False
-        self.clock_ms: int | None = None  # robot's clock minus host's, at the quickest frame seen
+        self.clock = RobotClock()
         self.last: Telemetry | None = None
         self._handshake = Handshake(number, now_ms)
         self._link = Link()
         self._trouble: SoftrigError | None = None
-        self._asked: dict[int, str] = {}
+        self._asked: dict[int, Asked] = {}
+        self._greeted_ms: int | None = None  # the first hello to an open session that is not answered
+        self._event_ms: int | None = None  # the robot's clock in its last event
         self._stopping = False
         self._stop_due_ms = 0
         self._period_ms = 0
         self._heard_ms = self._written_ms = self._probed_ms = now_ms
+        self._read_ms = now_ms  # when the line was last read: what arrives now was not there then
         self._bytes_in = self._bytes_out = self._damaged_before = 0
 
     @property
@@ -89,7 +112,7 @@ class Session:
         seq: int = self._link.send(message.number, payload, now_ms)
         if not self._expecting:
             self._heard_ms = now_ms
-        self._asked[seq] = message.name
+        self._asked[seq] = Asked(message.name, now_ms)
         if message is messages.SUBSCRIBE:
             self._period_ms = values["period_ms"]
         return seq
@@ -103,7 +126,7 @@ class Session:
         self._stopping, self._stop_due_ms = True, now_ms
 
     def receive(self, data: bytes, now_ms: int) -> list[Record]:
-        """Take received bytes; return the records they completed."""
+        """Take what a read of the line gave, even if that is nothing; return the records it completed."""
         self._bytes_in += len(data)
         records = []
         for received in self._link.receive(data, now_ms):
@@ -111,6 +134,7 @@ class Session:
             record = self._take(received.kind, received.payload, now_ms)
             if record is not None:
                 records.append(record)
+        self._read_ms = now_ms
         return records
 
     def poll(self, now_ms: int) -> bytes:
@@ -141,8 +165,8 @@ class Session:
         return max(min(due), now_ms + 1)
 
     def robot_ms(self, now_ms: int) -> int | None:
-        """Return the robot's clock at the host's `now_ms`, or None before any telemetry or event."""
-        return None if self.clock_ms is None else now_ms + self.clock_ms
+        """Return the robot's clock at the host's `now_ms`, or None before the robot has told it."""
+        return self.clock.at(now_ms)
 
     def statistics(self) -> dict[str, int | None]:
         """Return what the line did: bytes both ways, frames resent, repeated, missed, damaged, round trip [ms]."""
@@ -169,50 +193,73 @@ class Session:
         labels = self.profile.labels if self.profile else ()
         if kind == messages.TELEMETRY.number:
             self.last = telemetry_of(payload, now_ms)
-            self._compare(self.last.now_ms, now_ms)
+            self._compare(self.last.now_ms, self._expected_ms(self._read_ms, LATE_MS), self.last.state, now_ms)
             return self.last
         if kind == messages.EVENT.number:
-            event = event_of(payload, labels, now_ms)
-            self._compare(event.now_ms, now_ms)
-            self.holds_lease = self.holds_lease and event.event not in ("tripped", "disarmed")
-            return event
+            return self._happened(event_of(payload, labels, now_ms), now_ms)
         if kind == messages.STOPPED.number:
             self._stopping = self.holds_lease = False
-            return stopped_of(payload, labels, now_ms)
+            stopped = stopped_of(payload, labels, now_ms)
+            self._compare(stopped.now_ms, self._expected_ms(self._read_ms, LATE_MS), stopped.state, now_ms)
+            return stopped
         if kind < frames.UNSEEDED_BELOW:
             self._introduce(kind, payload, now_ms)
         else:
             self._answered(kind, payload, labels, now_ms)
         return None
 
+    def _happened(self, event: Event, now_ms: int) -> Event:
+        """Take an event: it may have been sent many times, but never arrives before one that is older."""
+        self._compare(event.now_ms, self._event_ms, event.event, now_ms)
+        self._event_ms = event.now_ms
+        self.holds_lease = self.holds_lease and event.event not in ("tripped", "disarmed")
+        return event
+
     def _answered(self, kind: int, payload: bytes, labels: tuple[str, ...], now_ms: int) -> None:
         answer: Refused | Status | None = None
         if kind == messages.OK.number:
             seq = messages.OK.unpack(payload).request
-            self.holds_lease = self.holds_lease or self._asked.get(seq) == messages.ARM.name
+            asked = self._asked.pop(seq, None)
+            self.holds_lease = self.holds_lease or (asked is not None and asked.name == messages.ARM.name)
         elif kind == messages.REFUSED.number:
             row = messages.REFUSED.unpack(payload)
             seq = row.request
             coil = labels[row.channel] if row.channel < len(labels) else None
-            answer = Refused(self._asked.get(seq, "an order"), row.code, row.value, row.limit, coil)
+            asked = self._asked.pop(seq, None)
+            answer = Refused(asked.name if asked else "an order", row.code, row.value, row.limit, coil)
         elif kind == messages.STATUS.number:
             seq = messages.STATUS.unpack(payload).request
+            asked = self._asked.pop(seq, None)
             answer = status_of(payload, labels, now_ms)
+            if asked:
+                self._compare(answer.uptime_ms, self._expected_ms(asked.at_ms, SLACK_MS), answer.state, now_ms)
         else:
             return
-        if self._asked.pop(seq, None) is not None:
+        if asked and not self._trouble:
             self.answers[seq] = answer
 
     def _introduce(self, kind: int, payload: bytes, now_ms: int) -> None:
         """Take an unseeded frame: the answers to hello and dictionary, or to the probe of a silent line."""
         if not self.open:
+            stranger = self.identity is None
             self._handshake.take(kind, payload, now_ms)
+            if stranger and self.identity is not None:
+                self.clock.read(self.identity.uptime_ms, now_ms)
             if self._handshake.complete:
                 self._begin()
         elif kind == messages.IDENTITY.number:
-            identity = messages.IDENTITY.unpack(payload)
-            if identity.session == self.number and identity.boot != self.identity.boot:
-                self._trouble = _restarted(identity.state)
+            self._recognise(messages.IDENTITY.unpack(payload), now_ms)
+
+    def _recognise(self, identity: Any, now_ms: int) -> None:
+        """Take the answer to the probe of a silent line."""
+        if identity.session != self.number:
+            return
+        state = state_name(identity.state)
+        if identity.boot != self.identity.boot:
+            self._trouble = _restarted(state)
+        if self._greeted_ms is not None:
+            self._compare(identity.uptime_ms, self._expected_ms(self._greeted_ms, SLACK_MS), state, now_ms)
+        self._greeted_ms = None
 
     def _begin(self) -> None:
         """Check that the robot means by every message what we mean, and seal all further frames with its seed."""
@@ -244,12 +291,13 @@ class Session:
             raise self._trouble
         if not (self.open and self._expecting):
             return
-        silence_ms = now_ms - self._heard_ms
+        silence_ms = self._read_ms - self._heard_ms
         if silence_ms >= SILENT_MS or self._link.broken:
             figures = ", ".join(f"{name} {value}" for name, value in self.statistics().items())
             raise LinkLost(f"the robot has fallen silent ({figures}); it switches its coils off by itself")
         if silence_ms >= PROBE_MS and now_ms - self._probed_ms >= PROBE_MS:
             self._probed_ms = now_ms
+            self._greeted_ms = now_ms if self._greeted_ms is None else self._greeted_ms
             self._link.post(messages.HELLO.number, messages.HELLO.pack(version=frames.VERSION, session=self.number))
 
     def _stop_bytes(self, now_ms: int) -> bytes:
@@ -258,13 +306,19 @@ class Session:
         self._stop_due_ms = now_ms + STOP_AGAIN_MS
         return frames.STOP * 3
 
-    def _compare(self, robot_ms: int, now_ms: int) -> None:
-        """Keep the difference of the clocks from the frame that was quickest on its way."""
-        difference = robot_ms - now_ms
-        self.clock_ms = difference if self.clock_ms is None else max(self.clock_ms, difference)
+    def _expected_ms(self, now_ms: int, late_ms: int) -> int | None:
+        """Return the earliest robot time that a frame made after the host's `now_ms` may carry."""
+        robot_ms = self.clock.at(now_ms)
+        return None if robot_ms is None else robot_ms - late_ms
+
+    def _compare(self, robot_ms: int, earliest_ms: int | None, state: str, now_ms: int) -> None:
+        """Take a robot time; one before `earliest_ms` is of a clock that has begun anew."""
+        if earliest_ms is not None and since(robot_ms, earliest_ms) < 0:
+            self._trouble = self._trouble or _restarted(state)
+        self.clock.read(robot_ms, now_ms)
 
 
-def _restarted(state: int) -> SoftrigError:
-    if state == messages.TRIPPED:
+def _restarted(state: str) -> SoftrigError:
+    if state == "tripped":  # so is the event of it called
         return RobotFault(codes.WATCHDOG)
     return LinkLost("the robot restarted in the middle of the session; its coils are off")

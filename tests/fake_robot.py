@@ -29,6 +29,8 @@ class FakeRobot:
         self.seed = frames.crc32(self.dictionary)
         self.link = Link(self.seed)
         self.boot = 1
+        self.now_ms = 0  # of the line
+        self.started_ms = 0  # the line's time at which the robot's clock began
         self.role = messages.HOLDER
         self.state = messages.IDLE
         self.session = 0
@@ -49,6 +51,7 @@ class FakeRobot:
 
     def step(self, now_ms: int, data: bytes) -> bytes:
         """Take the bytes that arrived, go on to `now_ms`, return the bytes to send."""
+        self.now_ms = now_ms
         if self.deaf:
             return b""
         if self._finder.feed(data):
@@ -63,9 +66,15 @@ class FakeRobot:
         payload = messages.EVENT.pack(event=event, code=code, step=3, channel=channel, value=value, now_ms=now_ms)
         self.link.send(messages.EVENT.number, payload, now_ms)
 
-    def restart(self) -> None:
-        """Forget everything, as after a reset."""
-        self.boot += 1
+    @property
+    def uptime_ms(self) -> int:
+        """Return the robot's clock."""
+        return (self.now_ms - self.started_ms) & 0xFFFFFFFF
+
+    def restart(self, boot: int | None = None) -> None:
+        """Forget everything, as after a reset; the next number of a start may be the same."""
+        self.boot = self.boot + 1 if boot is None else boot
+        self.started_ms = self.now_ms
         self.session, self.state, self.period_ms = 0, messages.IDLE, 0
         self.link.reset(self.seed)
 
@@ -119,13 +128,15 @@ class FakeRobot:
             self.tell(*self.ending, now_ms)
         if self.period_ms and now_ms >= self._due_ms:
             self._due_ms = now_ms + self.period_ms
-            self._telemetry(now_ms)
+            self.telemetry()
 
-    def _telemetry(self, now_ms: int) -> None:
+    def telemetry(self, late_ms: int = 0) -> None:
+        """Send telemetry, or what is that late."""
         words = [word for duty in self.duty for word in (duty, 250 + duty)]
         self._post(
-            messages.TELEMETRY, now_ms=now_ms, state=self.state, step=0, supply_mv=self.supply_mv, current_ma=0,
-            board_decidegc=231, channels=struct.pack(f"<{'Hh' * len(LABELS)}", *words),
+            messages.TELEMETRY, now_ms=(self.uptime_ms - late_ms) & 0xFFFFFFFF, state=self.state, step=0,
+            supply_mv=self.supply_mv, current_ma=0, board_decidegc=231,
+            channels=struct.pack(f"<{'Hh' * len(LABELS)}", *words),
         )  # fmt: skip
 
     def _hello(self, order) -> None:
@@ -133,22 +144,22 @@ class FakeRobot:
             self.session, self.period_ms = order.session, 0
             self.link.reset(self.seed)
         self._post(
-            messages.IDENTITY, session=order.session, boot=self.boot, dictionary_crc=self.seed,
-            dictionary_bytes=len(self.dictionary), version=frames.VERSION, state=self.state, role=self.role,
-            firmware=b"softrig 0.1.0",
+            messages.IDENTITY, session=order.session, boot=self.boot, uptime_ms=self.uptime_ms,
+            dictionary_crc=self.seed, dictionary_bytes=len(self.dictionary), version=frames.VERSION,
+            state=self.state, role=self.role, firmware=b"softrig 0.1.0",
         )  # fmt: skip
 
     def _status(self, seq: int, now_ms: int) -> None:
         self._send(
-            messages.STATUS, now_ms, request=seq, state=self.state, code=0, uptime_ms=now_ms, lease_ms=0, step=0,
-            coils=0, supply_mv=self.supply_mv, current_ma=12, board_decidegc=231, dropped=0, overruns=0,
+            messages.STATUS, now_ms, request=seq, state=self.state, code=0, uptime_ms=self.uptime_ms, lease_ms=0,
+            step=0, coils=0, supply_mv=self.supply_mv, current_ma=12, board_decidegc=231, dropped=0, overruns=0,
         )  # fmt: skip
 
     def _stopped(self, now_ms: int) -> None:
         on = sum(1 << i for i, duty in enumerate(self.duty) if duty)
         self.stops += 1
         self.state, self.duty, self._ends_ms = messages.TRIPPED, [0] * len(LABELS), None
-        self._post(messages.STOPPED, state=self.state, code=101, coils=on, now_ms=now_ms)
+        self._post(messages.STOPPED, state=self.state, code=101, coils=on, now_ms=self.uptime_ms)
 
     def _send(self, message, now_ms: int, **values) -> None:
         self.link.send(message.number, message.pack(**values), now_ms)
@@ -184,16 +195,25 @@ class FakeLine:
     def read(self, until_s: float) -> bytes:
         while not self._inward and self.now_ms < until_s * 1000 - 1e-6:
             self._check()
-            self.now_ms += STEP_MS
-            for due in [due for due in self.at if due <= self.now_ms]:
-                self.at.pop(due)()
-            data, self._outward = self._outward, b""
-            self._inward += self._damaged(self.robot.step(self.now_ms, data))
+            self._pass()
         data, self._inward = self._inward, b""
         return data
 
+    def unread(self, time_ms: int) -> None:
+        """Let time pass while nobody reads, as when the host's process is held up."""
+        until_ms = self.now_ms + time_ms
+        while self.now_ms < until_ms:
+            self._pass()
+
     def close(self) -> None:
         self.closed = True
+
+    def _pass(self) -> None:
+        self.now_ms += STEP_MS
+        for due in [due for due in self.at if due <= self.now_ms]:
+            self.at.pop(due)()
+        data, self._outward = self._outward, b""
+        self._inward += self._damaged(self.robot.step(self.now_ms, data))
 
     def _check(self) -> None:
         if self.cut:

@@ -5,6 +5,8 @@ from itertools import pairwise
 
 import pytest
 
+from hil_sim.faults import schedule
+from hil_sim.link import open_link
 from host.errors import (
     DictionaryMismatch,
     LinkLost,
@@ -193,6 +195,123 @@ def test_a_robot_that_was_restarted_by_its_watchdog_is_a_fault(peer, line):
 
     with pytest.raises(RobotFault, match="F12"):
         list(robot.listen(5000))
+
+
+def test_a_restart_is_noticed_within_a_second_although_the_number_of_the_start_repeats(peer, line):
+    robot = connected(line)
+    robot.subscribe(50)
+    peer.restart(boot=peer.boot)
+    start_ms = line.now_ms
+
+    with pytest.raises(LinkLost, match="restarted"):
+        list(robot.listen(5000))
+
+    assert line.now_ms - start_ms <= 1000
+
+
+def test_a_restart_is_noticed_by_the_first_telemetry_whose_clock_has_begun_anew(peer, line):
+    robot = connected(line)
+    robot.subscribe(50)
+    peer.restart(boot=peer.boot)
+    peer.period_ms = 50
+    start_ms = line.now_ms
+
+    with pytest.raises(LinkLost, match="restarted"):
+        list(robot.listen(5000))
+
+    assert line.now_ms - start_ms <= 60
+
+
+def test_a_restart_is_noticed_by_an_event_older_than_the_one_before(peer, line):
+    robot = connected(line)
+    peer.tell(messages.STEP, 0, 255, 0, 9000)
+    list(robot.listen(50))
+    peer.tell(messages.STEP, 0, 255, 0, 20)
+
+    with pytest.raises(LinkLost, match="restarted"):
+        list(robot.listen(5000))
+
+
+def test_a_restart_is_noticed_by_the_time_in_the_status(peer, line):
+    robot = connected(line)
+    peer.started_ms = peer.now_ms
+
+    with pytest.raises(LinkLost, match="restarted"):
+        robot.status()
+
+
+def test_a_restart_is_noticed_by_the_time_in_the_answer_to_a_stop(peer, line):
+    robot = connected(line)
+    peer.started_ms = peer.now_ms
+    peer.state = messages.TRIPPED
+    robot.stop()
+
+    with pytest.raises(RobotFault, match="F12"):
+        robot.status()
+
+
+def test_a_clock_that_wraps_is_no_restart(peer, line):
+    peer.started_ms = line.now_ms - (1 << 32) + 2000
+    robot = connected(line)
+    robot.subscribe(50)
+
+    times = [record.now_ms for record in robot.listen(5000)]
+
+    assert times[0] > times[-1]
+    assert robot.status().uptime_ms < 5000
+
+
+def test_telemetry_that_comes_late_is_no_restart(peer, line):
+    robot = connected(line)
+    robot.subscribe(50)
+    for at_ms in range(1500, 4000, 100):
+        line.at[at_ms] = lambda: peer.telemetry(late_ms=300)
+
+    assert len(list(robot.listen(4000))) > 100
+
+
+def test_a_host_that_was_held_up_takes_what_waited_for_it_for_no_restart(peer, line):
+    robot = connected(line)
+    robot.subscribe(50)
+    list(robot.listen(200))
+
+    line.unread(10_000)
+
+    assert len(list(robot.listen(1000))) > 200
+
+
+def test_an_event_that_was_long_on_its_way_is_no_restart(peer, line):
+    peer.started_ms = -60_000
+    robot = connected(line)
+    robot.subscribe(50)
+    list(robot.listen(200))
+    peer.tell(messages.STEP, 0, 255, 0, peer.uptime_ms - 20_000)
+
+    assert any(isinstance(record, Event) for record in robot.listen(1000))
+
+
+def test_clocks_that_run_apart_are_no_restart(peer, line):
+    robot = connected(line)
+    robot.subscribe(5000)
+
+    for _ in range(20):
+        peer.started_ms += 30  # 300 ppm of 100 s
+        assert list(robot.listen(100_000))
+
+    assert robot._session.robot_ms(line.now_ms) == pytest.approx(peer.uptime_ms, abs=30)
+
+
+def test_a_robot_on_the_bench_that_is_reset_is_noticed_within_a_second():
+    link = open_link("sim:circular")
+    robot = connected(link)
+    robot.subscribe(50)
+    schedule(link.bench, link.bench.clock.now_us + 300_000, "reset")
+    start_s = link.now_s()
+
+    with pytest.raises(RobotFault, match="F12"):
+        list(robot.listen(5000))
+
+    assert link.now_s() - start_s <= 0.3 + 1
 
 
 def test_an_order_without_an_answer_ends_the_session(peer, line):
