@@ -2,16 +2,16 @@
 
 Axes: x along the plane and up its slope, y away from it, the origin below the place where the robot stood at the
 start. Coil 0 is down at the start and the others follow counter-clockwise, so that rolling forward, to greater x,
-brings them down in their order; `rotation_deg` is positive in that sense. The plane of a robot on a slope lies level
-at first and is tilted from 2 s on, at 10 degrees a second, as one would under a robot that must first take hold: a
-round ring rolls off any slope.
+brings them down in their order; `rotation_deg` is positive in that sense. A sloped plane lies level, however long,
+until a coil is heated for the first time, and is tilted a moment later (`tilt_after_s`, `tilt_deg_per_s` of the robot
+file), as an operator tilts the table under a robot that has taken hold: a round ring rolls off any slope.
 
     plant = RingPlant(load("circular"))
     plant.advance(5000, np.array([0.3, 0, 0, 0, 0, 0, 0, 0]))
     plant.observe()["travel_mm"]
 """
 
-from math import degrees
+from math import degrees, inf
 from typing import Any
 
 import numpy as np
@@ -45,9 +45,7 @@ from hil_sim.physics.state import (
 )
 from hil_sim.robotfile import RobotFile
 
-TILT_FROM = 2.0  # [s] after the start
-TILT_RATE = np.radians(10.0)  # [rad/s]
-SETTLING_DRAG = 20.0  # [1/s]
+SETTLING_DRAG = 20.0  # [1/s] ASSUMED: numerical, the ring is at rest within its settle_s of 1 s
 
 
 class RingPlant:
@@ -58,7 +56,8 @@ class RingPlant:
         ground, count = robot.ground, len(robot.labels)
         self.labels = list(robot.labels)
         self._ring = ring_of(robot.ring, ground, count)
-        self._world = body.World(ground.gravity, ground.slope, TILT_FROM, abs(ground.slope) / TILT_RATE)
+        self._world = body.World(ground.gravity, ground.slope, inf, abs(ground.slope) / ground.tilt_rate)
+        self._tilt_after, self._taken_hold = ground.tilt_after, False
         self._method = method_of(rho, tolerance)
         R = robot.ring.R
         self._motion = motion_of(self._ring, round_pose(self._ring, R, R, robot.start.turn))
@@ -93,6 +92,8 @@ class RingPlant:
     def advance(self, duration_us: int, coil_power_w: Array) -> None:
         """Let time pass with the mean electrical power of each coil."""
         self._power[:] = coil_power_w
+        if not self._taken_hold and self._power.any():
+            self._take_hold()
         self._advance(*self._parts, self._power, duration_us * 1e-6)
 
     def observe(self) -> dict[str, Any]:
@@ -162,6 +163,12 @@ class RingPlant:
         keep = tally[[STEP, TURN]]
         tally[:] = 0.0
         tally[[STEP, TURN]] = keep
+
+    def _take_hold(self) -> None:
+        """Let the plane begin to tilt a moment after now, when a coil is heated for the first time."""
+        self._taken_hold = True
+        self._world = self._world._replace(tilt_from=float(self._motion.tally[TIME]) + self._tilt_after)
+        self._parts = (*self._parts[:3], self._world, *self._parts[4:])
 
     def _stored(self) -> dict[str, float]:
         """Return the mechanical energy of rim and hub [J]; that in the coils belongs to the coils."""

@@ -34,8 +34,8 @@ class Key:
 
 
 UNITS = (
-    "count", "deg", "degc", "g", "gpa", "j_per_kg_k", "k", "kg_per_m3", "kj_per_kg", "m_per_s2", "mm", "mpa_per_k",
-    "n", "n_m2", "n_per_m", "n_s_per_m", "ohm", "per_s", "ratio", "s", "uohm_m", "v", "w_per_m2_k",
+    "count", "deg", "deg_per_s", "degc", "g", "gpa", "j_per_kg_k", "k", "kg_per_m3", "kj_per_kg", "m_per_s2", "mm",
+    "mpa_per_k", "n", "n_m2", "n_per_m", "n_s_per_m", "ohm", "per_s", "ratio", "s", "uohm_m", "v", "w_per_m2_k",
     # Not used above: so that a number in another unit is recognised, and for the derived section.
     "cm", "kg", "m", "mg", "mohm", "mpa", "ms", "mv", "mw", "pa", "rad", "uj", "uj_per_k", "um", "uw_per_k",
 )  # fmt: skip
@@ -82,6 +82,8 @@ KEYS = (
     Key("sensors", "ntc_beta_k", "sensors", "ntc_beta_k", 1.0, 1, 100000),
     Key("sensors", "ntc_pull_up_ohm", "sensors", "ntc_pull_up_ohm", 1.0, 1, 1e8),
     Key("ground", "slope_deg", "ground", "slope", radians(1), -60, 60),
+    Key("ground", "tilt_after_s", "ground", "tilt_after", 1.0, 0, 3600),
+    Key("ground", "tilt_deg_per_s", "ground", "tilt_rate", radians(1), 0.01, 1000),
     Key("ground", "friction_ratio", "ground", "mu", 1.0, 0, 1000),
     Key("ground", "contact_stiffness_n_per_m", "ground", "k_n", 1.0, 0.001, 1e7),
     Key("ground", "contact_damping_n_s_per_m", "ground", "c_n", 1.0, 0, 10000),

@@ -11,7 +11,12 @@ from math import pi
 import pytest
 from click.testing import CliRunner
 
+from hil_sim.link import open_link
 from host.cli import main
+from host.gait.compiler import compile_script
+from host.gait.script import load
+from host.robot import Robot
+from host.run import run as run_program
 
 EIGHTH_MM = pi * 20 / 4
 CRAWL, BACK = "gaits/circular-crawl.gait", "gaits/circular-crawl-back.gait"
@@ -84,6 +89,23 @@ def test_looking_closer_changes_nothing(tmp_path):
 
 def test_it_climbs_ten_degrees_as_it_rolls_on_the_flat():
     assert report(CRAWL, "?slope=10")["observed"]["travel_mm"] == pytest.approx(8 * EIGHTH_MM, rel=0.05)
+
+
+def test_a_script_that_begins_later_climbs_the_same():
+    """A bench behind a port has stood for a while when its host comes."""
+    link = open_link("sim:circular?slope=10")
+    link.bench.run(seconds=5)
+    waited_mm = link.bench.observe()["travel_mm"]
+
+    with Robot(link) as robot:
+        robot.connect()
+        program = compile_script(load(CRAWL), robot.profile, ()).program
+        ending = run_program(robot, program, lambda stage, done: None)
+        travel_mm = link.bench.observe()["travel_mm"]
+
+    assert ending.result == "done"
+    assert abs(waited_mm) < 1e-3
+    assert travel_mm == pytest.approx(report(CRAWL, "?slope=10")["observed"]["travel_mm"], rel=0.02)
 
 
 NOWHERE = {

@@ -99,9 +99,19 @@ def test_without_friction_the_rim_slips_under_the_body():
     assert seen["rotation_deg"] > 60
 
 
+def test_a_robot_that_is_never_heated_stays_where_it_is_on_a_sloped_plane_too():
+    plant = new_plant(ground__slope_deg=10)
+
+    drive(plant, 10.0, duties())
+
+    assert abs(plant.observe()["travel_mm"]) < 1e-3
+    assert plant.energies()["tilt_j"] == 0.0
+
+
 def test_a_robot_on_a_steep_slope_that_is_not_held_rolls_down():
     plant = new_plant(ground__slope_deg=15)
 
+    drive(plant, 0.005, duties(0))  # enough to have the plane tilted, too little to take hold
     drive(plant, 5.0, duties())
 
     assert plant.observe()["travel_mm"] < -100

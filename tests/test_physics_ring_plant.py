@@ -93,15 +93,38 @@ def test_time_may_be_cut_anywhere():
     assert cut.snapshot()["hub"] == pytest.approx(whole.snapshot()["hub"], abs=0.02)
 
 
-def test_the_plane_is_level_until_it_is_tilted():
+def test_a_sloped_plane_is_level_until_a_moment_after_a_coil_is_first_heated():
     plant = new_plant(ground__slope_deg=10)
+    drive(plant, 5.0, duties())
+
+    slopes = []
+    for seconds in (1.4, 0.5, 0.5, 5.0):
+        slopes.append(plant.snapshot()["slope_deg"])
+        drive(plant, seconds, duties(0, duty=0.5))
+
+    assert [*slopes, plant.snapshot()["slope_deg"]] == pytest.approx([0, 0, 5, 10, 10], abs=1e-6)
+
+
+def test_a_coil_that_cools_and_is_heated_again_does_not_level_the_plane():
+    plant = new_plant(ground__slope_deg=10)
+    drive(plant, 3.0, duties(0, duty=0.5))
+
+    drive(plant, 1.0, duties())
+    drive(plant, 0.1, duties(1, duty=0.5))
+
+    assert plant.snapshot()["slope_deg"] == pytest.approx(10, abs=1e-6)
+
+
+def test_the_robot_file_says_when_and_how_fast_the_plane_is_tilted():
+    plant = new_plant(ground__slope_deg=-10, ground__tilt_after_s=0.5, ground__tilt_deg_per_s=20)
 
     slopes = []
     for _ in range(4):
         slopes.append(plant.snapshot()["slope_deg"])
-        drive(plant, 1.25, duties(0, duty=0.5))
+        drive(plant, 0.375, duties(0, duty=0.5))
 
-    assert slopes == pytest.approx([0, 0, 5, 10], abs=1e-6)
+    assert slopes[:2] == pytest.approx([0, 0], abs=1e-6)
+    assert slopes[2:] == pytest.approx([-5, -10], abs=1e-6)
 
 
 def test_the_rise_is_counted_from_the_standing_height_and_a_crawl_has_none():

@@ -26,6 +26,8 @@ class GroundNumbers:
     """An inclined plane that pushes and rubs; the contact is one-sided."""
 
     slope: float  # rises in the direction of travel [rad]
+    tilt_after: float  # time that a sloped plane stays level after a coil is first heated [s]
+    tilt_rate: float  # mean rate at which it is then tilted [rad/s]
     mu: float  # coefficient of friction [1]
     k_n: float  # normal stiffness of a node's contact [N/m]
     c_n: float  # normal damping of a node's contact [N s/m]

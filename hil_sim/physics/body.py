@@ -6,7 +6,8 @@ snap. Taking the length and not the force from the body keeps this stable: at gi
 runs away.
 
 Source: staggered scheme, derived here; that its step does not matter is checked in tests/test_physics_ring_crawl.py.
-The plane is y = 0 with x along it, up the slope; gravity turns. It may be tilted while things lie on it:
+The plane is y = 0 with x along it, up the slope; gravity turns. It may be tilted while things lie on it, and is level
+before, for ever where t_0 is infinite:
 
 .. math::  \theta(t) = \theta_1 \, \mathrm{smooth}\left(\frac{t - t_0}{t_1}\right), \quad
            g = 9.81 \, (-\sin \theta, -\cos \theta)                                                              (B1)
@@ -37,7 +38,7 @@ def packed(coils: Coils) -> Coils:
 
 
 class World(NamedTuple):
-    """Gravity [m/s2], final slope [rad], when the plane begins to tilt and for how long it does [s]."""
+    """Gravity [m/s2], final slope [rad], when the plane begins to tilt, or infinity, and for how long it does [s]."""
 
     gravity: float
     slope: float

@@ -23,7 +23,7 @@ from hil_sim.physics.spokes import couple
 # Rows of the array `ground`, one column per node.
 ANCHOR, TOUCH, NORMAL, FRICTION, SLIP, NORMAL_BEFORE, FRICTION_BEFORE = range(7)
 GROUND_ROWS = 7
-DEPTH_RAMP = 1e-5  # [m]
+DEPTH_RAMP = 1e-5  # [m] ASSUMED: numerical, a quarter of what a standing ring sinks in
 
 
 @kernel

@@ -20,7 +20,8 @@ from hil_sim.physics.ring import DXX, DXY, DYY, HXP, HXX, HXY, HYP, HYX, HYY, Ri
 LENGTH, PULL, RATE, UX, UY, TWIST, ARM, SOFT, FREE, SOLID, HARD = range(11)
 LENGTH_BEFORE, PULL_BEFORE = range(11, 13)
 SPOKE_ROWS = 13
-DAMPING_RAMP = 5e-5  # [m] the damping of a spoke grows from zero over this stretch, so that the force is continuous
+# The damping of a spoke grows from zero over this stretch, so that the force is continuous.
+DAMPING_RAMP = 5e-5  # [m] ASSUMED: numerical, short against the stretch of a hot coil that pulls, up to 1 mm
 
 
 @kernel

@@ -15,7 +15,7 @@ from hil_sim.physics.compiled import Array, kernel
 from hil_sim.physics.contact import between
 from hil_sim.physics.ring import DXX, DXY, DYY, Ring
 
-THICKNESS = 1e-3  # [m]
+THICKNESS = 1e-3  # [m] ASSUMED: of a rubber rim of 1.6 g that is 10 mm wide it would be 1.2 mm
 LEAP = 0.3 * THICKNESS  # [m] the longest way of a node in a step
 REACH = THICKNESS + 2.0 * LEAP  # [m]
 APART = 4  # nodes along the rim from which on two places may touch
