@@ -46,8 +46,9 @@ TICK_MS = 20  # while something waits to be acknowledged
 IDLE_TICK_MS = 250
 LATE_MS = 500  # between the making of a frame and its arrival on a line that is read
 SLACK_MS = 50  # between a question and the time told in its answer, should the clocks be read unluckily
-PROBE_MS = 500  # of silence, where there should be none, before hello is said again
+PROBE_MS = 500  # of silence, or without an answer, before hello is said again
 SILENT_MS = 2000
+ANSWER_MS = 5000
 
 
 class Asked(NamedTuple):
@@ -55,6 +56,7 @@ class Asked(NamedTuple):
 
     name: str
     at_ms: int
+    period_ms: int  # of the telemetry that it asks for
 
 
 class Session:
@@ -77,7 +79,7 @@ class Session:
         self._stopping = False
         self._stop_due_ms = 0
         self._period_ms = 0
-        self._heard_ms = self._written_ms = self._probed_ms = now_ms
+        self._written_ms = self._probed_ms = now_ms
         self._read_ms = now_ms  # when the line was last read: what arrives now was not there then
         self._bytes_in = self._bytes_out = self._damaged_before = 0
 
@@ -96,11 +98,6 @@ class Session:
         """Return whether another session holds the lease, so that this one may watch and stop only."""
         return self.open and self.identity.role == messages.VIEWER
 
-    @property
-    def _expecting(self) -> bool:
-        """Return whether the robot has something to say: an answer, or its telemetry."""
-        return bool(self._asked or self._period_ms)
-
     def request(self, message: messages.Message, now_ms: int, **values: Any) -> int:
         """Queue an order and return its number, under which `answers` will hold what the robot said."""
         if self.viewer:
@@ -110,11 +107,7 @@ class Session:
         except ValueError as error:
             raise BadRequest(str(error)) from error
         seq: int = self._link.send(message.number, payload, now_ms)
-        if not self._expecting:
-            self._heard_ms = now_ms
-        self._asked[seq] = Asked(message.name, now_ms)
-        if message is messages.SUBSCRIBE:
-            self._period_ms = values["period_ms"]
+        self._asked[seq] = Asked(message.name, now_ms, values.get("period_ms", 0))
         return seq
 
     def room(self) -> int:
@@ -130,7 +123,6 @@ class Session:
         self._bytes_in += len(data)
         records = []
         for received in self._link.receive(data, now_ms):
-            self._heard_ms = now_ms
             record = self._take(received.kind, received.payload, now_ms)
             if record is not None:
                 records.append(record)
@@ -220,7 +212,8 @@ class Session:
         if kind == messages.OK.number:
             seq = messages.OK.unpack(payload).request
             asked = self._asked.pop(seq, None)
-            self.holds_lease = self.holds_lease or (asked is not None and asked.name == messages.ARM.name)
+            if asked:
+                self._granted(asked)
         elif kind == messages.REFUSED.number:
             row = messages.REFUSED.unpack(payload)
             seq = row.request
@@ -237,6 +230,12 @@ class Session:
             return
         if asked and not self._trouble:
             self.answers[seq] = answer
+
+    def _granted(self, asked: Asked) -> None:
+        if asked.name == messages.ARM.name:
+            self.holds_lease = True
+        elif asked.name == messages.SUBSCRIBE.name:
+            self._period_ms = asked.period_ms
 
     def _introduce(self, kind: int, payload: bytes, now_ms: int) -> None:
         """Take an unseeded frame: the answers to hello and dictionary, or to the probe of a silent line."""
@@ -289,16 +288,35 @@ class Session:
         """Raise what became of the session; ask a robot that has fallen silent whether it is still there."""
         if self._trouble:
             raise self._trouble
-        if not (self.open and self._expecting):
-            return
-        silence_ms = self._read_ms - self._heard_ms
-        if silence_ms >= SILENT_MS or self._link.broken:
-            figures = ", ".join(f"{name} {value}" for name, value in self.statistics().items())
-            raise LinkLost(f"the robot has fallen silent ({figures}); it switches its coils off by itself")
-        if silence_ms >= PROBE_MS and now_ms - self._probed_ms >= PROBE_MS:
-            self._probed_ms = now_ms
-            self._greeted_ms = now_ms if self._greeted_ms is None else self._greeted_ms
-            self._link.post(messages.HELLO.number, messages.HELLO.pack(version=frames.VERSION, session=self.number))
+        unanswered_ms, silent_ms = self._unanswered_ms(), self._silent_ms()
+        if silent_ms >= SILENT_MS:
+            raise self._lost("has fallen silent")
+        if unanswered_ms >= ANSWER_MS:
+            raise self._lost(f"has not answered {next(iter(self._asked.values())).name} for {ANSWER_MS // 1000} s")
+        if max(unanswered_ms, silent_ms) >= PROBE_MS and now_ms - self._probed_ms >= PROBE_MS:
+            self._probe(now_ms)
+
+    def _unanswered_ms(self) -> int:
+        """Return for how long the oldest order had waited for its answer when the line was last read."""
+        return self._read_ms - next(iter(self._asked.values())).at_ms if self._asked else 0
+
+    def _silent_ms(self) -> int:
+        """Return for how long no intact frame of this session had come, answer or telemetry, that should have."""
+        if self._link.heard_ms is None:
+            return self._unanswered_ms()
+        quiet_ms = self._read_ms - self._link.heard_ms
+        missing_ms = quiet_ms - max(0, 2 * self._period_ms - PROBE_MS) if self._period_ms else 0
+        return max(missing_ms, min(quiet_ms, self._unanswered_ms()))
+
+    def _lost(self, how: str) -> LinkLost:
+        figures = ", ".join(f"{name} {value}" for name, value in self.statistics().items())
+        return LinkLost(f"the robot {how} ({figures}); it switches its coils off by itself")
+
+    def _probe(self, now_ms: int) -> None:
+        """Ask the robot who it is: one that was reset cannot say anything else to us."""
+        self._probed_ms = now_ms
+        self._greeted_ms = now_ms if self._greeted_ms is None else self._greeted_ms
+        self._link.post(messages.HELLO.number, messages.HELLO.pack(version=frames.VERSION, session=self.number))
 
     def _stop_bytes(self, now_ms: int) -> bytes:
         if not self._stopping or now_ms < self._stop_due_ms:

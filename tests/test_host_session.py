@@ -1,6 +1,7 @@
 """A host's session with a robot: over good lines, bad lines and lines that end, on a virtual clock."""
 
 import random
+from contextlib import suppress
 from itertools import pairwise
 
 import pytest
@@ -320,6 +321,73 @@ def test_an_order_without_an_answer_ends_the_session(peer, line):
 
     with pytest.raises(LinkLost, match="fallen silent"):
         robot.arm()
+
+
+@pytest.mark.parametrize("period_ms", [0, 50])
+def test_a_robot_that_greets_but_never_answers_is_given_up_after_five_seconds(peer, line, period_ms):
+    robot = connected(line)
+    robot.subscribe(period_ms)
+    obey = peer._serve
+    peer._serve = lambda received, now_ms: obey(received, now_ms) if received.kind == messages.HELLO.number else None
+    start_ms = line.now_ms
+
+    with pytest.raises(LinkLost, match="frames_resent"):
+        robot.status()
+
+    assert line.now_ms - start_ms <= 5300
+
+
+def test_a_robot_that_only_greets_has_fallen_silent(peer, line):
+    robot = connected(line)
+    robot.subscribe(50)
+    peer.period_ms = 0
+
+    with pytest.raises(LinkLost, match="fallen silent"):
+        list(robot.listen(10_000))
+
+
+def test_a_restart_is_noticed_by_an_order_although_the_robot_acknowledges_it(peer, line):
+    robot = connected(line)
+    robot.status()
+    peer.restart(boot=peer.boot)
+    start_ms = line.now_ms
+
+    with pytest.raises(LinkLost, match="restarted"):
+        robot.status()
+
+    assert line.now_ms - start_ms <= 1000
+
+
+def test_a_robot_that_may_be_quiet_for_long_is_not_taken_for_silent(peer, line):
+    robot = connected(line)
+    robot.subscribe(3000)
+
+    assert len(list(robot.listen(30_000))) == pytest.approx(10, abs=1)
+
+
+def test_a_refused_subscription_lets_nothing_be_expected(peer, line):
+    peer.refuse["subscribe"] = (codes.BAD_PAYLOAD, 255, 0, 0)
+    robot = connected(line)
+    with pytest.raises(Refused):
+        robot.subscribe(50)
+
+    assert list(robot.listen(5000)) == []
+
+
+@pytest.mark.parametrize("period_ms", [0, 50])
+def test_a_cable_that_was_cut_for_long_never_holds_the_host_up(period_ms):
+    link = open_link("sim:circular")
+    robot = connected(link)
+    robot.subscribe(period_ms)
+    for at_s, fault in ((0.5, "estop-open"), (0.51, "cable-cut"), (15.5, "cable-join")):
+        schedule(link.bench, round((link.now_s() + at_s) * 1e6), fault)
+    link.bench.run(16)
+    start_s = link.now_s()
+
+    with suppress(LinkLost):
+        assert robot.status().code == codes.ESTOP
+
+    assert link.now_s() - start_s <= 5.3
 
 
 def test_telemetry_is_decoded_with_both_clocks(line):
