@@ -110,4 +110,10 @@ def _told(code: int, value: int, limit: int = 0) -> str:
     if row is None:
         return f"code {code}, unknown to this version; update softrig"
     figures = f" {value} {row.unit}{f', at most {limit}' if limit else ''}." if row.unit else ""
-    return f"{row.name} {row.cause}{figures} {row.todo}"
+    return f"{row.name} {_cause(row, value)}{figures} {row.todo}"
+
+
+def _cause(row: codes.Code, value: int) -> str:
+    """Return the row's cause, and that of the fault behind it when a robot is latched."""
+    fault = codes.row(value) if row.number == codes.TRIPPED else None
+    return f"{row.cause[:-1]}: {fault.name} {fault.cause}" if fault else row.cause

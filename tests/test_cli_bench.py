@@ -13,7 +13,10 @@ from types import SimpleNamespace
 import pytest
 
 from host.cli import main
+from host.errors import Refused
+from host.link import open_link
 from host.logbook import read_log
+from host.robot import Robot
 
 FIRES = (
     "gait 1\nrobot circular\nrepeat 2:\n    fire A at 60 % for 400 ms\n    wait 200 ms\nfire C E at 50 % for 300 ms\n"
@@ -171,3 +174,21 @@ def terminal():
     for running in started:
         running.process.kill()
         running.process.wait()
+
+
+def test_a_run_at_too_low_a_supply_is_told_the_true_cause(softrig, script):
+    told = softrig("run", str(script), "--robot", "sim:circular?supply=1")
+
+    assert told.status in (4, 6)  # refused at once, or tripped as soon as the first coil is on
+    assert "F07 The supply voltage is below its limit." in told.err
+
+
+def test_a_robot_that_has_tripped_refuses_the_next_order_with_the_fault():
+    with Robot(open_link("sim:circular?supply=1")) as robot:
+        robot.connect()
+        robot.arm()
+        robot.fire(["A"], 600, 300)
+        list(robot.listen(1000))
+
+        with pytest.raises(Refused, match="R02 The robot has tripped and is latched: F07 The supply voltage"):
+            robot.arm()

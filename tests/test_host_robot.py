@@ -222,6 +222,29 @@ def test_a_refused_arm_leaves_nothing_to_disarm(peer, line):
     assert "disarm" not in names(peer)
 
 
+def test_a_robot_that_is_latched_says_which_fault_it_was(peer, line):
+    peer.refuse["arm"] = (codes.TRIPPED, 255, codes.SUPPLY_LOW, 0)
+    robot = Robot(line)
+    robot.connect()
+
+    with pytest.raises(Refused) as caught:
+        robot.arm()
+
+    assert str(caught.value) == (
+        "arm refused: R02 The robot has tripped and is latched: F07 The supply voltage is below its limit. "
+        "See the fault, mend its cause, then `softrig clear`."
+    )
+
+
+def test_a_fault_of_a_newer_robot_is_left_out_of_the_refusal(peer, line):
+    peer.refuse["arm"] = (codes.TRIPPED, 255, 999, 0)
+    robot = Robot(line)
+    robot.connect()
+
+    with pytest.raises(Refused, match=r"R02 The robot has tripped and is latched\. See"):
+        robot.arm()
+
+
 def test_every_byte_is_kept_with_both_clocks(line):
     class Kept:
         lines: list = []  # noqa: RUF012
