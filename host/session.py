@@ -30,6 +30,7 @@ from host.records import (
     Record,
     Status,
     Telemetry,
+    coil_name,
     event_of,
     state_name,
     status_of,
@@ -217,8 +218,8 @@ class Session:
         elif kind == messages.REFUSED.number:
             row = messages.REFUSED.unpack(payload)
             seq = row.request
-            coil = labels[row.channel] if row.channel < len(labels) else None
             asked = self._asked.pop(seq, None)
+            coil = coil_name(row.channel, labels)
             answer = Refused(asked.name if asked else "an order", row.code, row.value, row.limit, coil)
         elif kind == messages.STATUS.number:
             seq = messages.STATUS.unpack(payload).request
