@@ -50,6 +50,10 @@ class Link(Protocol):
 
 def open_link(address: str) -> Link:
     """Open the line at `address`; BadRequest when no scheme serves it, NoRobot and its kin when it cannot be had."""
+    if not address.strip():
+        raise BadRequest("no robot was named: write sim:circular, the path of a port, or socket://HOST:PORT")
+    if not address.isprintable():
+        raise BadRequest(f"{address!r} is no address: it holds what cannot be printed")
     schemes = {point.name: point for point in entry_points(group="softrig.links")}
     scheme, colon, _ = address.partition(":")
     if not (colon and scheme in schemes):

@@ -118,7 +118,8 @@ class Profile:
     def _index(self, label: str) -> int:
         if label not in self.labels:
             groups = f", groups {' '.join(self.groups)}" if self.groups else ""
-            raise BadRequest(f"no coil {label} on {self.robot}: it has {' '.join(self.labels)}{groups}")
+            shown = label if label.isprintable() and label.strip() else repr(label)
+            raise BadRequest(f"no coil {shown} on {self.robot}: it has {' '.join(self.labels)}{groups}")
         return self.labels.index(label)
 
 

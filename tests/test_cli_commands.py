@@ -330,6 +330,27 @@ def test_a_command_that_needs_a_robot_says_how_to_name_it(softrig, monkeypatch):
     assert "SOFTRIG_ROBOT" in told.err
 
 
+@pytest.mark.parametrize("command", ["status", "stop", "run", "check"])
+@pytest.mark.parametrize("address", ["", " "])
+def test_an_empty_address_names_no_robot(softrig, script, command, address):
+    told = softrig(command, *([script] if command in ("run", "check") else []), "--robot", address)
+
+    assert told.status == 2
+    assert told.err == "softrig: no robot was named: write sim:circular, the path of a port, or socket://HOST:PORT\n"
+
+
+@pytest.mark.parametrize("address", ["/dev/no\nport", "socket://no\nhost:7", "socket://[\n:7", "sim:no\nrobot"])
+def test_an_address_that_cannot_be_printed_is_refused_in_one_line(softrig, address):
+    told = softrig("status", "--robot", address)
+
+    assert told.status in (2, 3)
+    assert told.err.count("\n") == 1
+
+
+def test_a_figure_is_not_drawn_from_an_empty_address(softrig, tmp_path):
+    assert softrig("figure", "3", "-o", str(tmp_path / "3.svg"), "--robot", "").status == 2
+
+
 def test_a_script_that_is_not_there_is_said_so(softrig):
     told = softrig("check", "no-such.gait")
 

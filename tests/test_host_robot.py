@@ -245,6 +245,17 @@ def test_a_fault_of_a_newer_robot_is_left_out_of_the_refusal(peer, line):
         robot.arm()
 
 
+@pytest.mark.parametrize("name", ["", " ", "A\n", "A\x1b[2J"])
+def test_a_coil_that_cannot_be_printed_is_refused_in_one_line(line, name):
+    robot = Robot(line)
+    robot.connect()
+
+    with pytest.raises(BadRequest) as caught:
+        robot.fire([name], 600, 100)
+
+    assert str(caught.value) == f"no coil {name!r} on circular: it has A B C D E F G H, groups all"
+
+
 def test_every_byte_is_kept_with_both_clocks(line):
     class Kept:
         lines: list = []  # noqa: RUF012

@@ -7,7 +7,7 @@ import click
 from host.cli.connection import connected
 from host.cli.options import json_option, robot_option
 from host.cli.output import emit
-from host.cli.scripts import proven
+from host.cli.scripts import place, proven
 from host.gait.script import load
 
 
@@ -22,6 +22,6 @@ def command(script: str, robot: str | None, params: tuple[str, ...], as_json: bo
     The limits are asked of the robot itself; nothing is uploaded and nothing moves.
     """
     tree = load(script)
-    with connected(robot or f"sim:{tree.robot_name()}", watch_only=True) as face:
+    with connected(place(tree, robot), watch_only=True) as face:
         _, report = proven(tree, face.profile, params)
     emit(as_json, report.as_dict(), report.lines())

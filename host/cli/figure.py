@@ -9,7 +9,7 @@ import click
 import host
 from host.cli.options import robot_option
 from host.cli.output import note, writing
-from host.cli.scripts import proven
+from host.cli.scripts import place, proven
 from host.errors import BadRequest
 from host.gait.script import load
 from host.link import open_link
@@ -31,12 +31,13 @@ def command(number: str, output: Path, robot: str | None) -> None:
     """
     check_pictures(output)
     tree = load(script_path(SCRIPTS[number]))
-    link = open_link(robot or f"sim:{tree.robot_name()}")
+    address = place(tree, robot)
+    link = open_link(address)
     keeper = Keeper(observer=link.observer)
     with Robot(link, keeper) as face:
         face.connect()
         keeper.name_coils(face.profile.labels)
-        keeper.recording.title = f"{SCRIPTS[number]} on {robot or f'sim:{tree.robot_name()}'}"
+        keeper.recording.title = f"{SCRIPTS[number]} on {address}"
         compiled, _ = proven(tree, face.profile)
         ending = run(face, compiled.program, lambda stage, done: None)
     error = ending.error()

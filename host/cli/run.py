@@ -11,7 +11,7 @@ import click
 from host.cli.options import json_option, robot_option
 from host.cli.output import emit, json_line, note, writing
 from host.cli.progress import shown
-from host.cli.scripts import proven
+from host.cli.scripts import place, proven
 from host.gait.compiler import Compiled
 from host.gait.script import load
 from host.link import open_link, wall_s
@@ -44,7 +44,7 @@ def command(
     Ctrl-C sends stop, waits for the robot's answer and says what it was.
     """
     tree = load(script)
-    address = robot or f"sim:{tree.robot_name()}"
+    address = place(tree, robot)
     if plot_path:
         check_pictures(plot_path)
     with LogWriter(log_path) if log_path else nullcontext() as log:

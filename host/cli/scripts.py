@@ -11,6 +11,11 @@ from host.gait.script import Script
 from host.profile import Profile
 
 
+def place(script: Script, robot: str | None) -> str:
+    """Return the address that was given, or else the script's own robot on the bench."""
+    return f"sim:{script.robot_name()}" if robot is None else robot
+
+
 def proven(script: Script, profile: Profile, overrides: Sequence[str] = ()) -> tuple[Compiled, Report]:
     """Return the program and its worst case; GaitError lists what is wrong, or every limit it would break."""
     compiled = compile_script(script, profile, overrides)
