@@ -15,6 +15,7 @@ from protocol import frames, messages
 ASK_MS = 250  # a question without an answer is asked again after this long
 GIVE_UP_MS = 3000  # without any progress
 PAGES_AHEAD = 4
+READINGS = 3  # of a dictionary that does not fit its checksum
 
 Question = tuple[int, bytes]
 
@@ -27,6 +28,7 @@ class Handshake:
         self.complete = False
         self.trouble: SoftrigError | None = None
         self._session = session
+        self._readings = 0
         self._begin(now_ms)
 
     def take(self, kind: int, payload: bytes, now_ms: int) -> None:
@@ -97,8 +99,11 @@ class Handshake:
 
     def _finish(self, now_ms: int) -> None:
         text = b"".join(self._pages[at] for at in sorted(self._pages))
+        self._readings += 1
         if crc32(text) == self.identity.dictionary_crc:
             self.dictionary, self.complete = text, True
+        elif self._readings == READINGS:
+            self.trouble = Mismatch("the robot's dictionary does not fit its checksum: put its firmware on it again")
         else:  # the robot was given another firmware between two pages
             self._begin(now_ms)
 

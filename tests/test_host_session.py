@@ -102,6 +102,20 @@ def test_a_profile_that_lacks_a_limit_is_a_mismatch():
         robot.connect()
 
 
+def test_a_dictionary_that_never_fits_its_checksum_is_a_mismatch(peer, line):
+    peer.seed += 1
+
+    with pytest.raises(Mismatch, match="checksum"):
+        connected(line)
+
+
+def test_a_robot_that_gets_another_firmware_between_two_pages_is_learnt_anew(peer, line):
+    peer.seed += 1
+    line.at[1015] = lambda: setattr(peer, "seed", peer.seed - 1)
+
+    assert connected(line).profile.labels == tuple(LABELS)
+
+
 def test_a_refusal_says_what_was_asked_what_is_allowed_and_what_to_do(peer, line):
     peer.refuse["fire"] = (codes.DUTY_LIMIT, 2, 900, 800)
     robot = connected(line)
