@@ -7,7 +7,7 @@ from pathlib import Path
 
 from firmware.core import Core
 from firmware.profile import Profile
-from protocol import messages
+from protocol import messages, program
 from protocol.link import Link
 
 PROFILE = Path(__file__).parent.parent / "firmware" / "robots" / "circular.json"
@@ -158,3 +158,11 @@ class Rig:
 def refusal(answers):
     """Return the refusal among answers."""
     return next(body for name, body in answers if name == "refused")
+
+
+def run_program(rig: Rig, code: bytes, flags: int = 0, robot_crc: int | None = None):
+    """Upload a program, arm and start it; return all answers."""
+    header = program.header(code, rig.profile.crc if robot_crc is None else robot_crc, flags)
+    answers = rig.upload(code, header)
+    rig.arm()
+    return answers + rig.say(messages.START)
