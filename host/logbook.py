@@ -53,7 +53,7 @@ class Log:
     def title(self) -> str:
         """Return what the run was: its script and address, or the name of the file."""
         versions = json.loads(self.attachments.get("versions.json", b"{}"))
-        return f"{versions['script']} on {versions['address']}" if "script" in versions else self.path.name
+        return f"{Path(versions['script']).name} on {versions['address']}" if "script" in versions else self.path.name
 
     def info(self) -> Row:
         """Return what is in the log."""

@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
+from host.cli import main as softrig
 from host.gait.compiler import compile_script
 from host.gait.script import load
 from host.link import open_link
@@ -93,6 +94,18 @@ def test_a_crawl_is_drawn_from_its_scenes_and_is_the_same_file_each_time(crawl, 
 
     assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "b.svg").read_bytes()
     assert ElementTree.parse(tmp_path / "a.svg").getroot().tag.endswith("svg")
+
+
+def test_a_log_gives_the_picture_of_its_run(tmp_path):
+    script, log, live, later = (
+        str(GAITS / "circular-poses.gait"),
+        *(str(tmp_path / name) for name in ("a.mcap", "a.svg", "b.svg")),
+    )
+    softrig(["run", script, "--log", log, "--plot", live], standalone_mode=False)
+
+    softrig(["log", "plot", log, "-o", later], standalone_mode=False)
+
+    assert Path(later).read_bytes() == Path(live).read_bytes()
 
 
 def test_a_ring_that_rolls_off_is_drawn_while_it_is_near(tmp_path):

@@ -75,7 +75,7 @@ def _film_heights(film: Recording, frames: list[int]) -> tuple[float, float]:
     """Return the heights of the strip and of the frames with their names, which follow from their widths."""
     strip, frame = strip_extent(film), frame_boxes(film, frames)[0]
     wide = PAGE_MM - LEFT_MM - RIGHT_MM - BAR_MM
-    strip_mm = wide * (strip[3] - strip[2]) / (strip[1] - strip[0])
+    strip_mm = min(1.0, wide / (strip[1] - strip[0])) * (strip[3] - strip[2])  # never larger than it is
     frame_mm = (PAGE_MM - LEFT_MM - RIGHT_MM) / FRAMES * (frame[3] - frame[2]) / (frame[1] - frame[0])
     return NAME_MM + min(strip_mm, STRIP_MAX_MM) + GAP_MM, NAME_MM + frame_mm + GAP_MM
 
