@@ -33,7 +33,7 @@ $(READY): pyproject.toml
 	@{ command -v uv >/dev/null 2>&1 && uv pip install --quiet --python $(BIN)/python -e '.[dev,plot,can,data]'; } \
 	|| $(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,plot,can,data]'
 	@echo "Compiling the physics for this machine"
-	@$(BIN)/python -c 'from hil_sim.physics import warm; warm()'
+	@$(BIN)/softrig info --robot sim:circular >/dev/null
 	@touch $@
 
 test: $(READY)

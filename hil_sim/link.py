@@ -28,10 +28,11 @@ def open_link(address: str) -> "SimLink":
 
     ValueError (of the address or the robot file), LookupError or OSError say in their text what is wrong.
     """
-    from hil_sim.assembly import assemble  # noqa: PLC0415  (heavy: the compiled physics)
+    with _interrupts_deferred(None):
+        from hil_sim.assembly import assemble  # noqa: PLC0415  (heavy: the compiled physics)
 
-    bench = assemble(parse(address))
-    bench.clock.run_until(BOOTED_US)
+        bench = assemble(parse(address))
+        bench.clock.run_until(BOOTED_US)
     return SimLink(bench)
 
 
@@ -86,16 +87,23 @@ class SimLink:
 
 
 @contextmanager
-def _interrupts_deferred(bench: Bench) -> Iterator[None]:
-    """Let Ctrl-C end the run at its present instant and be felt only after it: it belongs to the host."""
+def _interrupts_deferred(bench: Bench | None) -> Iterator[None]:
+    """Let Ctrl-C end the run of `bench` at its present instant and be felt only after it: it belongs to the host.
+
+    Without a bench, which is then being built: machine code is loaded by callbacks that lose an exception or abort.
+    A second Ctrl-C is felt at once there, as a first compilation takes its time.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     came: list[int] = []
 
     def note(number: int, frame: FrameType | None) -> None:
+        if came and bench is None:
+            raise KeyboardInterrupt
         came.append(number)
-        bench.clock.stop_at(0)
+        if bench is not None:
+            bench.clock.stop_at(0)
 
     before: Any = signal.signal(signal.SIGINT, note)
     try:

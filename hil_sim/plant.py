@@ -72,6 +72,7 @@ class RingPlant:
         self._advance = bound(body.advance, *self._parts, self._power, 0.0)
         self._start = centre(self._ring, self._motion.now[0])
         self._stored_at_start = sum(self._stored().values())
+        self.observe()  # no machine code is left to be loaded later
 
     @property
     def temperature(self) -> Array:

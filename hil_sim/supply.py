@@ -33,6 +33,8 @@ class Supply:
         self._width: FloatArray = np.zeros(len(series_ohm))
         self._period_us = 1.0
         self._steady = True
+        self.solve(np.full(len(series_ohm), np.inf))  # all open: no machine code is left to be loaded later
+        self.integrals_vus(0, 0, 1, 1, 1)
 
     def drive(self, gates: Sequence[Gate], period_us: float) -> None:
         """Take the gates that hold from now on; `solve` must follow."""

@@ -132,7 +132,7 @@ def test_an_interrupted_run_stops_the_robot_and_keeps_its_log(softrig, terminal,
     running.process.send_signal(number)
     told = running.rest()
 
-    assert running.process.wait(PATIENCE_S) == 130
+    assert running.process.wait(PATIENCE_S) == 130, told
     assert "stop acknowledged" in told
     assert json.loads(softrig("log", "info", str(log), "--json").out)["complete"]
 
