@@ -3,11 +3,14 @@
 import signal
 import subprocess
 import sys
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from hil_sim import assembly
 from hil_sim.link import open_link
+from hil_sim.physics.compiled import prepare
 
 RUN_A_HOT_SECOND = """
 from numba.core.caching import Cache
@@ -60,3 +63,14 @@ def test_a_second_interrupt_does_not_wait_for_the_bench(monkeypatch):
 
     with pytest.raises(KeyboardInterrupt):
         open_link("sim:circular")
+
+
+def test_stale_code_that_another_process_drops_at_the_same_time_is_no_error(monkeypatch, tmp_path):
+    gone = tmp_path / "ring.march-1.nbi"
+    monkeypatch.setattr(Path, "glob", lambda folder, pattern: [gone] if pattern == "*.nbi" else [Path(__file__)])
+    code = SimpleNamespace(co_filename="ring.py")
+    entry = SimpleNamespace(
+        signatures=[], stats=SimpleNamespace(cache_path=tmp_path), py_func=SimpleNamespace(__code__=code)
+    )
+
+    assert prepare(entry)

@@ -31,9 +31,9 @@ def prepare(entry: Any) -> bool:
     if entry.signatures:
         return False
     sources = list(Path(__file__).parent.glob("*.py"))
-    newest = max(source.stat().st_mtime for source in sources)
+    newest = max(_written_s(source) for source in sources)
     indexes = list(Path(entry.stats.cache_path).glob("*.nbi"))
-    fresh = [index for index in indexes if index.stat().st_mtime >= newest]
+    fresh = [index for index in indexes if _written_s(index) >= newest]
     if len(fresh) < len(indexes):
         for index in indexes:
             index.unlink(missing_ok=True)
@@ -42,6 +42,14 @@ def prepare(entry: Any) -> bool:
     if cold:
         print("softrig: compiling the physics kernels, once (about 20 s) ...", file=sys.stderr, flush=True)
     return cold
+
+
+def _written_s(path: Path) -> float:
+    """Return when a file was written; 0 when it has gone, as another process drops stale code too."""
+    try:
+        return path.stat().st_mtime
+    except FileNotFoundError:
+        return 0.0
 
 
 def bound(entry: Any, *arguments: Any) -> Callable[..., Any]:
