@@ -28,7 +28,7 @@ class Channels:
         self.count = count
         self.on_mask = 0
         self.duty_permille = array("H", [0] * count)
-        self.cut_off_mask = 0  # coils whose cut-off ended their order since the last `take_cut_offs`
+        self.cut_off_mask = 0  # coils whose cut-off ended their order since the reports last told them
         self._outputs = outputs
         self._coil = coil
         self._at_once_max = at_once_max

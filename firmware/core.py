@@ -71,8 +71,8 @@ class Core:
 
     def control(self, now_ms: int) -> int:
         """Sense, guard, sequence and drive once; return the code of a fault, or 0. Allocates nothing."""
-        self.sense.read()
         self.sense.update(now_ms, self.channels.on_mask, self.channels.duty_permille)
+        self.sense.read()
         powered = messages.ARMED <= self.state <= messages.RUNNING
         code = self.guard.check(now_ms, powered)
         if not code and self.state == messages.RUNNING:
@@ -142,6 +142,7 @@ class Core:
         """Give the link to a new session; it holds no lease, so that what the last one armed ends now."""
         self.session = session
         self.lease_ms = 0
+        self.commands.upload.request = -1
         self.link.reset(self.link.decoder.seed)
         self.reports.period_ms = 0
 
@@ -157,9 +158,11 @@ class Core:
 
     def _begin(self) -> None:
         self.state = messages.IDLE
+        if self._after_reset:
+            self.sense.assume_hot()
         try:
             self._begin_chips()
-            self.sense.begin(self.now_ms, self._after_reset)
+            self.sense.begin_supply()
         except OSError:
             self.trip(codes.CHIP)
         if self._after_reset:

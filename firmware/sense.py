@@ -19,7 +19,7 @@ class Sense:
         self.current_ma = 0
         self.board_decidegc = 250  # as read: the guard judges it
         self._ambient_decidegc = 250  # the last reading that can be
-        self.temperature_millidegc = array("i", [25_000] * count)
+        self.temperature_millidegc = array("i", [25_000] * count)  # cold, until power or a reset says otherwise
         self.heat_uj = array("i", [0] * count)  # taken and not yet leaked away
         self.hottest = -1  # among the coils that are on, the one with the highest estimate; -1: none is on
         self.fullest = -1  # and the one nearest to its heat budget
@@ -44,17 +44,12 @@ class Sense:
         elif self._turn & 2:
             self._read_supply()
 
-    def begin(self, now_ms: int, after_reset: bool) -> None:
-        """Read everything once and take all coils as cold, or, after a reset that forgot them, as hot as may be."""
-        self.begin_supply()
-        coil = self._coil
+    def assume_hot(self) -> None:
+        """Take every coil as just below its trip, its budget spent: what a reset forgot may be so."""
         for channel in range(self._count):
-            self._seen_ms[channel] = now_ms
-            self.temperature_millidegc[channel] = self._ambient_decidegc * 100
-            if after_reset:
-                self.temperature_millidegc[channel] = coil.trip_decidegc * 100
-                self.heat_uj[channel] = coil.heat_budget_mj * 1000
-                self._martensite_permille[channel] = 0
+            self.temperature_millidegc[channel] = self._coil.trip_decidegc * 100
+            self.heat_uj[channel] = self._coil.heat_budget_mj * 1000
+            self._martensite_permille[channel] = 0
 
     def begin_supply(self) -> None:
         """Read every sensor now; OSError when the monitor does not answer."""

@@ -55,6 +55,7 @@ class Monitor:
     def __init__(self) -> None:
         self.ma = 0
         self.mv = 2000
+        self.absent = False
 
     def begin(self) -> None:
         """Nothing to set."""
@@ -63,10 +64,15 @@ class Monitor:
         return True
 
     def current_ma(self) -> int:
-        return self.ma
+        return self._read(self.ma)
 
     def voltage_mv(self) -> int:
-        return self.mv
+        return self._read(self.mv)
+
+    def _read(self, value: int) -> int:
+        if self.absent:
+            raise OSError(5, "EIO")
+        return value
 
 
 class Table:

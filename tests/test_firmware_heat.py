@@ -107,3 +107,29 @@ def test_a_broken_thermistor_does_not_spoil_the_estimates(rig):
 
     assert rig.core.code == codes.SENSOR
     assert 45_000 < rig.core.sense.temperature_millidegc[0] < before
+
+
+def test_the_estimate_goes_on_cooling_while_the_monitor_is_gone(rig):
+    """One step over ten silent seconds would make a coil colder than the air, and its next heat invisible."""
+    rig.arm()
+    rig.fire(1, duty_permille=1000, hold_ms=900)
+    rig.run(900)
+
+    rig.board.supply.absent = True
+    rig.run(10_000)
+    rig.board.supply.absent = False
+    rig.run(100)
+
+    assert min(rig.core.sense.temperature_millidegc) > 20_000
+    assert max(rig.core.sense.temperature_millidegc) < 40_000
+
+
+@pytest.mark.parametrize("gone", ["chip", "supply"])
+def test_a_reset_takes_every_coil_as_hot_also_when_a_chip_does_not_answer(gone):
+    rig = Rig()
+    getattr(rig.board, gone).absent = True
+    core = Core(rig.board, rig.profile, boot=2, after_reset=True)
+
+    core.step(0, b"", 1024)
+
+    assert min(core.sense.temperature_millidegc) > 115_000

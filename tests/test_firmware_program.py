@@ -220,3 +220,24 @@ def test_after_the_end_of_a_program_no_step_is_told(rig):
 
     assert rig.events("finished")[0].step == 7
     assert status.step == 0
+
+
+def test_a_new_session_is_not_told_of_the_last_one_s_start(rig):
+    code = program.delay(1) * 400 + program.halt()
+    rig.upload(code, program.header(code, rig.profile.crc))
+    rig.arm(lease_ms=50)
+    rig.run(5, silent=True, line=start_of(rig))
+    rig.core.lease_ms = 1  # so short that the next host finds it over, while the verification goes on
+
+    rig.host.reset(rig.core.link.decoder.seed)
+    rig.host.post(messages.HELLO.number, messages.HELLO.pack(version=1, session=78))
+    answers = rig.run(200, silent=True, line=rig.host.poll(rig.now_ms))
+
+    assert [name for name, _ in answers if name == "refused"] == []
+    assert not rig.events("started")
+
+
+def start_of(rig):
+    """Return the bytes of a start that the host sends now."""
+    rig.host.send(messages.START.number, messages.START.pack(), rig.now_ms)
+    return rig.host.poll(rig.now_ms)

@@ -48,7 +48,7 @@ class Bare:
         self.sense = Sense(board, board.supply, 8, profile)
         self.player = Player(self.channels, self.sense)
         self.on_ms, self.heat_uj, self.at_once, self.too_long = [0] * 8, [0] * 8, 0, -1
-        self.sense.begin(0, after_reset=False)
+        self.sense.begin_supply()
         self.player.load(code, 0)
         self.now_ms = 0
 
@@ -56,8 +56,8 @@ class Bare:
         """Run to the end and return the outcome; Refused passes through."""
         outcome = RUNNING
         while outcome == RUNNING:
-            self.sense.read()
             self.sense.update(self.now_ms, self.channels.on_mask, self.channels.duty_permille)
+            self.sense.read()
             outcome = self.player.run(self.now_ms)
             self.too_long = max(self.too_long, self.channels.update(self.now_ms, self.sense.temperature_millidegc))
             self._measure()
