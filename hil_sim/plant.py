@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from hil_sim.physics import body, coil
+from hil_sim.physics.bodies import StartNumbers
 from hil_sim.physics.coilset import coils_of, cold
 from hil_sim.physics.compiled import Array, bound, prepare
 from hil_sim.physics.contact import crossings
@@ -53,20 +54,23 @@ class RingPlant:
 
     def __init__(self, robot: RobotFile, rho: float = 0.8, tolerance: float = TOLERANCE) -> None:
         prepare(body.advance)
+        numbers, start = robot.ring, robot.start
+        if numbers is None or not isinstance(start, StartNumbers):
+            raise ValueError(f"{robot.name} is no ring but a {robot.kind}")
         ground, count = robot.ground, len(robot.labels)
         self.labels = list(robot.labels)
-        self._ring = ring_of(robot.ring, ground, count)
+        self._ring = ring_of(numbers, ground, count)
         self._world = body.World(ground.gravity, ground.slope, inf, abs(ground.slope) / ground.tilt_rate)
         self._tilt_after, self._taken_hold = ground.tilt_after, False
         self._method = method_of(rho, tolerance)
-        R = robot.ring.R
-        self._motion = motion_of(self._ring, round_pose(self._ring, R, R, robot.start.turn))
-        self._motion.spokes[[LENGTH, LENGTH_BEFORE]] = R - robot.ring.attach
+        R = numbers.R
+        self._motion = motion_of(self._ring, round_pose(self._ring, R, R, start.turn))
+        self._motion.spokes[[LENGTH, LENGTH_BEFORE]] = R - numbers.attach
         coils = coils_of(robot.coil, count, ground.T_amb)
         self._coils = body.packed(coils)
         self._state = cold(coils, self._motion.spokes[LENGTH])
         coil.measure(self._state, self._motion.spokes[LENGTH], coils)
-        self._settle(robot.start.settle)
+        self._settle(start.settle)
         self._power = np.zeros(count)
         self._parts = (self._ring, self._coils, self._state, self._world, self._method, self._motion)
         self._advance = bound(body.advance, *self._parts, self._power, 0.0)

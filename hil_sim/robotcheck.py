@@ -4,16 +4,13 @@ import re
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
-from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from hil_sim.robotkeys import KEYS, UNITS, Key
+from hil_sim.robotkeys import BATTERY, BENCH, KEYS, KINDS, UNITS, Key, keys_of
+from hil_sim.robottexts import TEXTS, is_text, mistakes_in
 
 STANDINGS = ("paper", "read", "derived", "assumed", "fitted")
-KINDS = ("ring",)
-CHIPS = (96, 97)  # PWM chips of the board
-TEXTS = {"": ("about", "profile"), "shell": ("kind",), "coils": ("labels",), "wiring": ("outputs",)}
 FOR_THE_READER = ("derived",)  # a section that is held to the form but not to the table of keys
 RISING = ("martensite_finish", "martensite_start", "austenite_start", "austenite_finish")
 FROM_ADDRESS = "set by the robot's address"
@@ -30,7 +27,10 @@ class Entry:
 
 
 class Check:
-    """The numbers of a robot file in `entries`, and in `mistakes` one line for each thing wrong with it."""
+    """The numbers of a robot file in `entries`, and in `mistakes` one line for each thing wrong with it.
+
+    `rows` are the keys that such a robot has.
+    """
 
     def __init__(self, path: Path, text: str, data: dict[str, Any], overrides: Mapping[str, str]) -> None:
         self.entries: dict[str, Entry] = {}
@@ -40,9 +40,12 @@ class Check:
         self._meant: set[str] = set()  # keys that the file tried to give
         sections = {"": {key: value for key, value in data.items() if not isinstance(value, dict)}}
         sections |= {key: value for key, value in data.items() if isinstance(value, dict)}
+        kind = kind_of(sections)
+        self.rows = keys_of(kind, BATTERY if "battery" in sections else BENCH)
         self._sections(sections)
-        self._missing(sections)
-        self._texts(sections)
+        self._missing()
+        for name, what in mistakes_in(sections, kind):
+            self._say(name, what)
         for name, value in overrides.items():
             self._override(name, value)
         self._ranges()
@@ -54,19 +57,25 @@ class Check:
         self.mistakes.append(f"{self._path}:{line}: {what}")
 
     def _sections(self, sections: dict[str, dict[str, Any]]) -> None:
-        known = {key.section for key in KEYS} | set(TEXTS) | set(FOR_THE_READER)
+        known = {key.section for key in self.rows} | set(TEXTS) | set(FOR_THE_READER)
         for section, table in sections.items():
             if section not in known:
-                self._say(f"[{section}]", f"unknown section [{section}]{near(section, known)}")
-                self._meant |= {key.name for key in KEYS if key.section in get_close_matches(section, known, 1)}
+                why = self._elsewhere(section) or near(section, known)
+                self._say(f"[{section}]", f"unknown section [{section}]{why}")
+                self._meant |= {key.name for key in self.rows if key.section in get_close_matches(section, known, 1)}
                 continue
             for key, value in table.items():
-                if key not in TEXTS.get(section, ()):
+                if not is_text(section, key):
                     self._number(section, key, value)
+
+    def _elsewhere(self, name: str) -> str:
+        """Return which robots have a section or a number that this one has not."""
+        only = [key.only for key in KEYS if name in (key.section, key.name) and key not in self.rows]
+        return f": it belongs to a robot with a {only[0]}" if only else ""
 
     def _number(self, section: str, key: str, value: object) -> None:
         name = f"{section}.{key}" if section else key
-        rows = [row for row in KEYS if row.section == section]
+        rows = [row for row in self.rows if row.section == section]
         if section not in FOR_THE_READER and key not in {row.key for row in rows}:
             self._unknown(name, key, rows)
             return
@@ -89,7 +98,7 @@ class Check:
                 return
         keys = [row.key for row in rows]
         self._meant |= {f"{name.removesuffix(key)}{match}" for match in get_close_matches(key, keys, 1)}
-        self._say(name, f"unknown key {key}{near(key, keys)}")
+        self._say(name, f"unknown key {key}{self._elsewhere(name) or near(key, keys)}")
 
     def _standing(self, name: str, value: float, text: str) -> None:
         standing, _, source = text.partition(":")
@@ -99,55 +108,16 @@ class Check:
             self._say(name, f"{name}: read where? Write it as read: source")
         self.entries[name] = Entry(name, value, standing, source.strip())
 
-    def _missing(self, sections: dict[str, dict[str, Any]]) -> None:
-        for key in KEYS:
+    def _missing(self) -> None:
+        for key in self.rows:
             if key.name not in self._meant:
                 row = f'{key.key} = [value, "standing: source"]'
                 self._say(key.section, f"[{key.section}] lacks {key.key}: add {row}")
-        for section, names in TEXTS.items():
-            for name in names:
-                if name not in sections.get(section, {}):
-                    self._say(section, f"{f'[{section}]' if section else 'the file'} lacks {name}")
-
-    def _texts(self, sections: dict[str, dict[str, Any]]) -> None:
-        shell, coils, wiring = (sections.get(name, {}) for name in ("shell", "coils", "wiring"))
-        for name in TEXTS[""]:
-            if not isinstance(sections[""].get(name, ""), str):
-                self._say(name, f'{name}: write it as {name} = "text"')
-        if shell.get("kind", "ring") not in KINDS:
-            self._say("shell.kind", f"kind {shell['kind']!r} is none of {', '.join(KINDS)}")
-        labels, outputs = coils.get("labels", []), wiring.get("outputs", {})
-        if not (isinstance(labels, list) and all(isinstance(label, str) for label in labels)):
-            self._say("coils.labels", 'labels: write them as ["A", "B", ...]')
-        elif not labels:
-            self._say("coils.labels", "labels: a robot has at least one coil")
-        elif len(set(labels)) < len(labels):
-            self._say("coils.labels", "labels: each coil needs its own")
-        elif not isinstance(outputs, dict) or sorted(outputs) != sorted(labels):
-            self._say("wiring.outputs", f"outputs: one [chip, output] for each of {', '.join(labels)}")
-        else:
-            self._outputs(outputs)
-
-    def _outputs(self, outputs: dict[str, Any]) -> None:
-        seen: dict[tuple[int, int], str] = {}
-        for label, place in outputs.items():
-            if not (isinstance(place, list) and len(place) == 2 and all(type(part) is int for part in place)):
-                self._say("wiring.outputs", f"outputs: {label} needs [chip address, output number]")
-                continue
-            chip, output = place
-            if chip not in CHIPS:
-                known = " and ".join(map(str, CHIPS))
-                self._say("wiring.outputs", f"outputs: {label} on chip {chip}, the board has {known}")
-            if not 0 <= output < 16:
-                self._say("wiring.outputs", f"outputs: {label} on output {output}, a chip has 0 to 15")
-            if (chip, output) in seen:
-                self._say("wiring.outputs", f"outputs: {label} and {seen[chip, output]} share [{chip}, {output}]")
-            seen[chip, output] = label
 
     def _override(self, name: str, text: str) -> None:
-        known = [key.name for key in KEYS]
+        known = [key.name for key in self.rows]
         if name not in known:
-            self.mistakes.append(f"set={name}: no such number{near(name, known)}")
+            self.mistakes.append(f"set={name}: no such number{self._elsewhere(name) or near(name, known)}")
             return
         try:
             self.entries[name] = Entry(name, float(text), "assumed", FROM_ADDRESS)
@@ -155,9 +125,9 @@ class Check:
             self.mistakes.append(f"set={name}:{text}: {text!r} is not a number")
 
     def _ranges(self) -> None:
-        for key in KEYS:
+        for key in self.rows:
             entry = self.entries.get(key.name)
-            if entry and not (isfinite(entry.value) and key.least <= entry.value <= key.most):
+            if entry and not key.allows(entry.value):
                 what = f"{key.name} is {entry.value:g}, it must be {key.range}"
                 if entry.source == FROM_ADDRESS:
                     self.mistakes.append(f"set={key.name}: {what}")
@@ -169,6 +139,15 @@ class Check:
             self._say(names[0], f"the temperatures must rise: {', '.join(names)}")
 
 
+def kind_of(sections: Mapping[str, dict[str, Any]]) -> str:
+    """Return the kind of shell that a file describes: by name, or where that is none by most of its keys."""
+    given = sections.get("shell", {}).get("kind")
+    if given in KINDS:
+        return str(given)
+    found = {f"{section}.{key}" for section, table in sections.items() for key in table}
+    return max(KINDS, key=lambda kind: len(found & {key.name for key in keys_of(kind, BENCH)}))
+
+
 def line_numbers(text: str) -> dict[str, int]:
     """Return the line number of each `section.key`, `key` above the sections, and `[section]`."""
     found: dict[str, int] = {}
@@ -177,6 +156,7 @@ def line_numbers(text: str) -> dict[str, int]:
         if match := re.match(r"\s*\[([\w.-]+)\]", line):
             section = match[1]
             found.setdefault(f"[{section}]", number)
+            found.setdefault(section, number)  # [a.b] is the value of b in [a], too
         elif match := re.match(r"\s*([\w-]+)\s*=", line):
             found.setdefault(f"{section}.{match[1]}" if section else match[1], number)
     return found

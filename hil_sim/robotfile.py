@@ -9,15 +9,16 @@ with all its mistakes, each as file:line and what to do. A lab's own robot is th
 """
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hil_sim.physics.bodies import GroundNumbers, RingNumbers, StartNumbers
+from hil_sim.physics.battery import BatteryNumbers
+from hil_sim.physics.bodies import Attitude, GroundNumbers, RingNumbers, SphereNumbers, StartNumbers
 from hil_sim.physics.coilset import CoilNumbers
 from hil_sim.robotcheck import Check, Entry, near
-from hil_sim.robotkeys import KEYS
+from hil_sim.robotkeys import RING, Key
 
 FOLDER = Path(__file__).parent / "robots"
 PROFILES = Path(__file__).parents[1] / "firmware" / "robots"
@@ -38,8 +39,8 @@ class Wiring:
     lead_ohm: float  # copper of one coil
     switch_ohm: float  # MOSFET of one coil
     source_ohm: float  # shared by all coils
-    supply_v: float
     outputs: dict[str, tuple[int, int]]  # label: chip (I2C address), output
+    supply_v: float = 0.0  # of the bench supply; a robot with a battery has none
 
     @property
     def series_ohm(self) -> float:
@@ -64,12 +65,16 @@ class RobotFile:
     name: str
     about: str
     profile: Path
-    labels: tuple[str, ...]
-    ring: RingNumbers
+    kind: str  # of the shell: "ring" or "sphere"
+    labels: tuple[str, ...]  # of the coils from the core, then of those between points of the hoops
+    jumps: tuple[tuple[str, str], ...]  # labels of the points between which each of the latter runs, in their order
+    ring: RingNumbers | None
+    sphere: SphereNumbers | None
     coil: CoilNumbers
     ground: GroundNumbers
-    start: StartNumbers
+    start: StartNumbers | Attitude
     wiring: Wiring
+    battery: BatteryNumbers | None
     sensors: Sensors
     entries: tuple[Entry, ...]
 
@@ -94,7 +99,7 @@ def load(robot: str, overrides: Mapping[str, str] | None = None) -> RobotFile:
     check = Check(path, text, data, overrides or {})
     if check.mistakes:
         raise RobotFileError("\n".join(check.mistakes))
-    return _robot(path, data, check.entries)
+    return _robot(path, data, check.rows, check.entries)
 
 
 def find(robot: str) -> Path:
@@ -110,23 +115,29 @@ def find(robot: str) -> Path:
     raise NoSuchRobot(f"{what}; known are {', '.join(known)}, or give the path of a robot file")
 
 
-def _robot(path: Path, data: dict[str, Any], entries: Mapping[str, Entry]) -> RobotFile:
+def _robot(path: Path, data: dict[str, Any], rows: Sequence[Key], entries: Mapping[str, Entry]) -> RobotFile:
     """Return a file without mistakes in SI units."""
-    groups: dict[str, dict[str, Any]] = {}
-    for key in KEYS:
+    kind, coils = data["shell"]["kind"], data["coils"]
+    points = tuple(coils.get("jump_labels", ()))
+    groups: dict[str, dict[str, Any]] = {"battery": {}}
+    for key in rows:
         groups.setdefault(key.target, {})[key.field] = entries[key.name].value * key.si
-    groups["ring"]["nodes"] = int(groups["ring"]["nodes"])
+    groups["body"]["nodes"] = int(groups["body"]["nodes"])
     outputs = {label: (chip, output) for label, (chip, output) in data["wiring"]["outputs"].items()}
     return RobotFile(
         name=path.stem,
         about=data["about"],
         profile=_profile(path, data["profile"]),
-        labels=tuple(data["coils"]["labels"]),
-        ring=RingNumbers(**groups["ring"]),
+        kind=kind,
+        labels=(*coils["labels"], *points),
+        jumps=tuple(zip(points, points[1:] + points[:1], strict=True)),
+        ring=RingNumbers(**groups["body"]) if kind == RING else None,
+        sphere=SphereNumbers(**groups["body"]) if kind != RING else None,
         coil=CoilNumbers(**groups["coil"]),
         ground=GroundNumbers(**groups["ground"]),
-        start=StartNumbers(**groups["start"]),
+        start=(StartNumbers if kind == RING else Attitude)(**groups["start"]),
         wiring=Wiring(outputs=outputs, **groups["wiring"]),
+        battery=BatteryNumbers(**groups["battery"]) if groups["battery"] else None,
         sensors=Sensors(**groups["sensors"]),
         entries=tuple(entries.values()),
     )

@@ -1,12 +1,17 @@
 """Every number that a robot file may hold: its key with the unit at the end, and where it goes in SI units.
 
 A row reads: section, key, target, field, factor from the unit of the key to SI, least and greatest value allowed in the
-unit of the key. This table is the border between the units that sources print and the SI units of the physics. The
-ranges are wide, some thousand times what a soft robot has; beyond them the solvers lose their figures.
+unit of the key, and where not every robot has it: which do. This table is the border between the units that sources
+print and the SI units of the physics. The ranges are wide, some thousand times what a soft robot has; beyond them the
+solvers lose their figures.
 """
 
 from dataclasses import dataclass
-from math import inf, radians
+from math import inf, isfinite, radians
+
+RING, SPHERE = "ring", "sphere"  # kinds of shell
+BENCH, BATTERY = "bench supply", "battery"  # kinds of power
+KINDS = (RING, SPHERE)
 
 
 @dataclass(frozen=True)
@@ -20,6 +25,8 @@ class Key:
     si: float  # one unit of the key in SI units
     least: float = 0.0
     most: float = inf
+    only: str = ""  # robots of this kind of shell or power have it
+    multiple: int = 0  # it counts, in steps of this many
 
     @property
     def name(self) -> str:
@@ -29,31 +36,46 @@ class Key:
     @property
     def range(self) -> str:
         """Return what is allowed, in words."""
-        least = f"at least {self.least:g}"
-        return least if self.most == inf else f"{least} and at most {self.most:g}"
+        most = "" if self.most == inf else f" and at most {self.most:g}"
+        steps = {0: "", 1: " and a whole number"}.get(self.multiple, f" and a multiple of {self.multiple}")
+        return f"at least {self.least:g}{most}{steps}"
+
+    def allows(self, value: float) -> bool:
+        """Return whether this is a value that a robot may have."""
+        fits = isfinite(value) and self.least <= value <= self.most
+        return fits and (not self.multiple or value % self.multiple == 0)
 
 
 UNITS = (
-    "count", "deg", "deg_per_s", "degc", "g", "gpa", "j_per_kg_k", "k", "kg_per_m3", "kj_per_kg", "m_per_s2", "mm",
-    "mpa_per_k", "n", "n_m2", "n_per_m", "n_s_per_m", "ohm", "per_s", "ratio", "s", "uohm_m", "v", "w_per_m2_k",
+    "count", "deg", "deg_per_s", "degc", "g", "gpa", "j_per_kg_k", "k", "kg_per_m3", "kj_per_kg", "m_per_s2", "ma",
+    "mah", "mm", "mpa_per_k", "n", "n_m2", "n_per_m", "n_s_per_m", "ohm", "per_s", "percent", "ratio", "s", "uohm_m",
+    "v", "w_per_m2_k",
     # Not used above: so that a number in another unit is recognised, and for the derived section.
     "cm", "kg", "m", "mg", "mohm", "mpa", "ms", "mv", "mw", "pa", "rad", "uj", "uj_per_k", "um", "uw_per_k",
 )  # fmt: skip
 """The units a key may end in."""
 
 KEYS = (
-    Key("shell", "radius_mm", "ring", "R", 1e-3, 1, 10000),
-    Key("shell", "mass_g", "ring", "m", 1e-3, 0.001, 100000),
-    Key("shell", "bending_stiffness_n_m2", "ring", "EI", 1.0, 1e-9, 100),
-    Key("shell", "stretch_stiffness_n", "ring", "EA", 1.0, 0.01, 1e6),
-    Key("shell", "bending_damping_s", "ring", "tau_v", 1.0, 0, 1),
-    Key("shell", "air_drag_per_s", "ring", "drag", 1.0, 0, 1000),
-    Key("shell", "nodes_count", "ring", "nodes", 1.0, 16, 256),
-    Key("hub", "mass_g", "ring", "m_hub", 1e-3, 0.001, 100000),
-    Key("hub", "radius_mm", "ring", "r_hub", 1e-3, 0, 10000),
-    Key("hub", "attach_mm", "ring", "attach", 1e-3, 0, 10000),
-    Key("coils", "slack_mm", "ring", "slack", 1e-3, 0, 10000),
-    Key("coils", "taut_damping_n_s_per_m", "ring", "damping", 1.0, 0, 100),
+    Key("shell", "radius_mm", "body", "R", 1e-3, 1, 10000),
+    Key("shell", "mass_g", "body", "m", 1e-3, 0.001, 100000),
+    Key("shell", "joints_mass_g", "body", "m_joints", 1e-3, 0, 100000, SPHERE),
+    Key("shell", "bending_stiffness_n_m2", "body", "EI", 1.0, 1e-9, 100),
+    Key("shell", "edgewise_ratio", "body", "edgewise", 1.0, 0.1, 1000, SPHERE),
+    Key("shell", "twist_ratio", "body", "twist", 1.0, 0.1, 1000, SPHERE),
+    Key("shell", "stretch_stiffness_n", "body", "EA", 1.0, 0.01, 1e6),
+    Key("shell", "bending_damping_s", "body", "tau_v", 1.0, 0, 1),
+    Key("shell", "strip_width_mm", "body", "width", 1e-3, 0, 1000, SPHERE),
+    Key("shell", "air_drag_per_s", "body", "drag", 1.0, 0, 1000),
+    Key("shell", "nodes_count", "body", "nodes", 1.0, 16, 256, RING, 1),
+    Key("shell", "nodes_count", "body", "nodes", 1.0, 8, 128, SPHERE, 8),
+    Key("hub", "mass_g", "body", "m_hub", 1e-3, 0.001, 100000, RING),
+    Key("hub", "radius_mm", "body", "r_hub", 1e-3, 0, 10000, RING),
+    Key("hub", "attach_mm", "body", "attach", 1e-3, 0, 10000, RING),
+    Key("core", "mass_g", "body", "m_core", 1e-3, 0.001, 100000, SPHERE),
+    Key("core", "radius_mm", "body", "r_core", 1e-3, 0.01, 10000, SPHERE),
+    Key("core", "attach_mm", "body", "attach", 1e-3, 0, 10000, SPHERE),
+    Key("coils", "slack_mm", "body", "slack", 1e-3, 0, 10000),
+    Key("coils", "taut_damping_n_s_per_m", "body", "damping", 1.0, 0, 100),
     Key("coils", "wire_diameter_mm", "coil", "d", 1e-3, 0.001, 10),
     Key("coils", "mean_diameter_mm", "coil", "D", 1e-3, 0.001, 100),
     Key("coils", "turns_count", "coil", "n", 1.0, 1, 100000),
@@ -76,7 +98,13 @@ KEYS = (
     Key("wiring", "lead_ohm", "wiring", "lead_ohm", 1.0),
     Key("wiring", "switch_ohm", "wiring", "switch_ohm", 1.0),
     Key("wiring", "source_ohm", "wiring", "source_ohm", 1.0),
-    Key("wiring", "supply_v", "wiring", "supply_v", 1.0, 0, 60),
+    Key("wiring", "supply_v", "wiring", "supply_v", 1.0, 0, 60, BENCH),
+    Key("battery", "cells_count", "battery", "cells", 1.0, 1, 20, BATTERY, 1),
+    Key("battery", "capacity_mah", "battery", "Q", 3.6, 0.001, 1e6, BATTERY),
+    Key("battery", "charge_percent", "battery", "z", 1e-2, 0, 100, BATTERY),
+    Key("battery", "internal_ohm", "battery", "r", 1.0, 0, 1000, BATTERY),
+    Key("battery", "cut_off_v", "battery", "V_cut", 1.0, 0, 100, BATTERY),
+    Key("battery", "board_ma", "battery", "I_board", 1e-3, 0, 10000, BATTERY),
     Key("sensors", "shunt_ohm", "sensors", "shunt_ohm", 1.0, 1e-6, 100),
     Key("sensors", "ntc_ohm", "sensors", "ntc_ohm", 1.0, 1, 1e8),
     Key("sensors", "ntc_beta_k", "sensors", "ntc_beta_k", 1.0, 1, 100000),
@@ -89,6 +117,18 @@ KEYS = (
     Key("ground", "contact_damping_n_s_per_m", "ground", "c_n", 1.0, 0, 10000),
     Key("ground", "gravity_m_per_s2", "ground", "gravity", 1.0, 0, 1000),
     Key("ground", "ambient_degc", "ground", "T_amb", 1.0, -40, 60),
-    Key("start", "turn_deg", "start", "turn", radians(1), -360, 360),
+    Key("ground", "step_mm", "ground", "step", 1e-3, -1000, 1000),
+    Key("ground", "step_at_mm", "ground", "step_at", 1e-3, -100000, 100000),
+    Key("ground", "roughness_mm", "ground", "rough", 1e-3, 0, 1000),
+    Key("ground", "roughness_length_mm", "ground", "rough_length", 1e-3, 0.25, 100000),
+    Key("start", "turn_deg", "start", "turn", radians(1), -360, 360, RING),
+    Key("start", "yaw_deg", "start", "yaw", radians(1), -360, 360, SPHERE),
+    Key("start", "pitch_deg", "start", "pitch", radians(1), -360, 360, SPHERE),
+    Key("start", "roll_deg", "start", "roll", radians(1), -360, 360, SPHERE),
     Key("start", "settle_s", "start", "settle", 1.0, 0, 60),
 )
+
+
+def keys_of(kind: str, power: str) -> tuple[Key, ...]:
+    """Return the numbers that a robot with this kind of shell and of power has."""
+    return tuple(key for key in KEYS if key.only in ("", kind, power))

@@ -29,10 +29,10 @@ class Soundness:
 
     def look(self, snapshot: Mapping[str, Any], t_s: float) -> None:
         """Raise CameApart when the shape of that time is none that a robot can have."""
-        hub = tuple(snapshot.get("hub", ())[:2])
-        if not hub:
+        nodes = snapshot.get("nodes")
+        if not nodes:
             return
-        nodes = snapshot["nodes"]
+        hub = tuple(snapshot["hub"][: len(nodes[0])])
         degrees = [coil.get("degc", 0.0) for coil in snapshot["coils"].values()]
         if not all(map(isfinite, chain(hub, degrees, *nodes))):
             raise CameApart(_told(t_s, "its numbers are none any more"))
