@@ -22,7 +22,7 @@ from hil_sim.devices.ntc import Ntc
 from hil_sim.journal import Journal
 from hil_sim.record import CoilRecord
 from hil_sim.soundness import EVERY_US, Soundness
-from hil_sim.supply import Supply
+from hil_sim.supply import Battery, Supply
 from hil_sim.worlds.cpython import CPythonWorld, Crash
 from hil_sim.worlds.image import Image
 
@@ -64,6 +64,7 @@ class Parts:
     source_ohm: float = 0.02  # shared by all coils, the shunt included
     shunt_ohm: float = 0.02
     supply_v: float = 2.0
+    battery: Battery | None = None  # on board, in place of the bench supply
     ambient_degc: float = 25.0
     ntc: Ntc | None = None
 
@@ -85,7 +86,8 @@ class Bench:
         self.clock = Clock()
         self.journal = Journal(keep_journal)
         self.plant = plant
-        self.supply = Supply(np.array(parts.series_ohm, float), parts.source_ohm, parts.shunt_ohm, parts.supply_v)
+        series_ohm = np.array(parts.series_ohm, float)
+        self.supply = Supply(series_ohm, parts.source_ohm, parts.shunt_ohm, parts.supply_v, parts.battery)
         self.board = Board(self.clock, self.journal, self.supply, parts.outputs, parts.ntc or Ntc(), baud, identity)
         self.board.degc = parts.ambient_degc
         self.board.changed = self._gates_changed
@@ -117,6 +119,11 @@ class Bench:
         record.energy_j = float(self._energy_j[index])
         return record
 
+    def break_coil(self, label: str, broken: bool = True) -> None:
+        """Open the wire of a coil, or mend it."""
+        self.supply.break_coil(self.coils.index(self._by_label[label]), broken)
+        self._gates_changed()
+
     @property
     def any_coil_on(self) -> bool:
         """Whether any coil is being heated."""
@@ -135,8 +142,10 @@ class Bench:
         """Return what a motion capture system would see, and what was done to each coil."""
         now_us = self.clock.now_us
         coils = {coil.label: self.coil(coil.label) for coil in self.coils}
+        battery = self.supply.battery
         return {
             **self.plant.observe(),
+            **({"battery_percent": 100.0 * battery.charge} if battery else {}),
             "t_s": now_us / 1e6,
             "coil_on_s": {label: coil.on_us(now_us) / 1e6 for label, coil in coils.items()},
             "coil_energy_j": {label: coil.energy_j for label, coil in coils.items()},
@@ -160,12 +169,14 @@ class Bench:
 
     def _grid(self) -> None:
         self._advance()
-        if self._hot:  # resistances have changed
+        if self._hot or self.supply.stale:  # resistances have changed, or the source
             self.board.monitor.before_change()
             self.supply.solve(self.plant.resistance)
         if self.clock.now_us % EVERY_US == 0:
             self._soundness.look(self.plant.snapshot(), self.clock.now_us / 1e6)
         self.clock.at(self.clock.now_us + GRID_US, self._grid)
+        if self.world.running and self.supply.battery is not None and self.supply.battery.cut:
+            self.world.power_off()
 
     def _gates_changed(self) -> None:
         self._advance()
@@ -184,6 +195,7 @@ class Bench:
             return
         self._advanced_us = self.clock.now_us
         self.plant.advance(duration_us, self.supply.power_w)
+        self.supply.spend(duration_us)
         if self._hot:
             self._energy_j += self.supply.power_w * (duration_us * 1e-6)
             np.maximum(self._peak_degc, self.plant.temperature, out=self._peak_degc)

@@ -2,7 +2,8 @@
 
 This is where the netlist meets the physics: gates (shares of the PWM period) go in, powers and voltages come out.
 The order on the rail is source, shunt, the monitor's bus pin, the PWR_EN switch, coils; so the monitor sees the
-supply's voltage also while the switch is open. The resistance of the source includes the shunt.
+supply's voltage also while the switch is open. The resistance of the source includes the shunt. A battery on board
+stands before that source, and feeds the board's own chips before the shunt.
 
 ASSUMED: the PWM chips run in phase, and their period began at time 0.
 """
@@ -13,28 +14,82 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hil_sim.devices.pca9685 import Gate
+from hil_sim.physics.battery import BatteryNumbers, open_voltage
 from hil_sim.physics.circuit import circuit_of
 from hil_sim.physics.window import solve_period, window_charges
 
 FloatArray = NDArray[np.float64]
 
 
-class Supply:
-    """Voltage source, shunt and coils. `power_w` and `current_a` are the means over a PWM period."""
+STALE_V = 1e-3  # a source that has moved so far since the last solution calls for another
 
-    def __init__(self, series_ohm: FloatArray, source_ohm: float, shunt_ohm: float, voltage_v: float) -> None:
+
+class Battery:
+    """What is left in a battery. `cut` is True once its protection has opened: no voltage, whatever is left."""
+
+    def __init__(self, numbers: BatteryNumbers) -> None:
+        self.charge = numbers.z  # share that is left
+        self.cut = False
+        self.inner_ohm = numbers.r
+        self._numbers = numbers
+
+    @property
+    def voltage_v(self) -> float:
+        """Return its voltage with nothing but the board to feed."""
+        if self.cut:
+            return 0.0
+        return open_voltage(self.charge, self._numbers.cells) - self.inner_ohm * self._numbers.I_board
+
+    def spend(self, current_a: float, duration_us: int) -> None:
+        """Give the coils and the board their current."""
+        if self.cut:
+            return
+        self.charge -= (current_a + self._numbers.I_board) * duration_us * 1e-6 / self._numbers.Q
+        self.cut = self.voltage_v - self.inner_ohm * current_a < self._numbers.V_cut
+
+
+class Supply:
+    """Source, shunt and coils. `power_w` and `current_a` are the means over a PWM period.
+
+    The source is a bench supply of `voltage_v`, or the battery where there is one.
+    """
+
+    def __init__(
+        self,
+        series_ohm: FloatArray,
+        source_ohm: float,
+        shunt_ohm: float,
+        voltage_v: float,
+        battery: Battery | None = None,
+    ) -> None:
         self.power_w: FloatArray = np.zeros(len(series_ohm))
         self.current_a = 0.0
-        self._circuit = circuit_of(series_ohm, source_ohm, voltage_v)
-        self._source_ohm = source_ohm
+        self.battery = battery
+        self._series_ohm = series_ohm.copy()
+        self._source_ohm = source_ohm + (battery.inner_ohm if battery else 0.0)
+        self._voltage_v = battery.voltage_v if battery else voltage_v
+        self._circuit = circuit_of(series_ohm, self._source_ohm, self._voltage_v)
         self._shunt_ohm = shunt_ohm
-        self._voltage_v = voltage_v
         self._on: FloatArray = np.zeros(len(series_ohm))
         self._width: FloatArray = np.zeros(len(series_ohm))
         self._period_us = 1.0
         self._steady = True
         self.solve(np.full(len(series_ohm), np.inf))  # all open: no machine code is left to be loaded later
         self.integrals_vus(0, 0, 1, 1, 1)
+
+    @property
+    def stale(self) -> bool:
+        """Whether the source has moved since `solve`, so that it should be done again."""
+        return self.battery is not None and abs(self.battery.voltage_v - self._voltage_v) > STALE_V
+
+    def spend(self, duration_us: int) -> None:
+        """Take from the battery, where there is one, what has been drawn for so long."""
+        if self.battery is not None:
+            self.battery.spend(self.current_a, duration_us)
+
+    def break_coil(self, index: int, broken: bool) -> None:
+        """Open the wire of a coil, or mend it; `solve` must follow."""
+        self._circuit.r[index] = np.inf if broken else self._series_ohm[index]
 
     def drive(self, gates: Sequence[Gate], period_us: float) -> None:
         """Take the gates that hold from now on; `solve` must follow."""
@@ -43,6 +98,8 @@ class Supply:
 
     def solve(self, resistance_ohm: FloatArray) -> None:
         """Work out powers and currents for resistances that hold from now on."""
+        if self.battery is not None:
+            self._voltage_v = self._circuit.supply[0] = self.battery.voltage_v
         self.current_a = solve_period(self._circuit, self._on, self._width, resistance_ohm, self.power_w)
         self._steady = self._circuit.intervals[0] == 1
 

@@ -56,6 +56,12 @@ class CPythonWorld:
         self.board.power_cycle()
         self._begin(PWRON_RESET, self._ticks_start_us)
 
+    def power_off(self) -> None:
+        """Take the board's supply away: its pins rest, its chips forget, nothing executes."""
+        self.close()
+        self.board.power_cycle()
+        self.board.reset_processor(PWRON_RESET)
+
     def reset(self) -> None:
         """Reset the processor as the watchdog, or `machine.reset`, does."""
         self.resets += 1
