@@ -1,6 +1,6 @@
 """Addresses of the bench: `sim:NAME?option=value&...`, read into a robot file and the options of a run.
 
-    parse("sim:circular?slope=10&seed=2&set=shell.mass_g:2.0")
+    parse("sim:circular?slope=10&seed=2&set=shell.mass_g:2.0&open=A,C")
 
 NAME is a robot of the bench or the path of a robot file. Whatever cannot be read raises AddressError with what is
 allowed and what was perhaps meant.
@@ -18,7 +18,7 @@ SHORT = {
     "mu": "ground.friction_ratio",
     "supply": "wiring.supply_v",
 }
-OPTIONS = (*SHORT, "seed", "set", "world", "baud")
+OPTIONS = (*SHORT, "seed", "set", "open", "world", "baud")
 WORLDS = ("cpython",)
 BAUD_MAX = 4_000_000
 
@@ -36,6 +36,7 @@ class Address:
     seed: int = 1
     world: str = WORLDS[0]
     baud: int = 115_200
+    open: tuple[str, ...] = ()  # coils whose wire is broken
 
 
 def parse(text: str) -> Address:
@@ -62,6 +63,8 @@ def _take(address: Address, name: str, value: str) -> None:
         if not colon:
             raise AddressError(f"set={value}: write set=section.key_unit:number, as in set=shell.mass_g:2.0")
         address.overrides[key] = _number(f"set={key}", number)
+    elif name == "open":
+        address.open += tuple(value.split(","))
     elif name == "seed":
         address.seed = _whole(name, value, 0, 2**32 - 1)
     elif name == "baud":

@@ -3,25 +3,45 @@
 import json
 
 from hil_sim.address import Address
-from hil_sim.bench import Bench, Parts
+from hil_sim.bench import Bench, Parts, Plant
 from hil_sim.devices.ntc import Ntc
+from hil_sim.faults import schedule
 from hil_sim.plant import RingPlant
+from hil_sim.robotcheck import near
 from hil_sim.robotfile import RobotFile, RobotFileError, load
+from hil_sim.robotkeys import RING
 from hil_sim.soundness import CameApart
+from hil_sim.supply import Battery
 from hil_sim.worlds.image import Image
 
 
 def assemble(address: Address) -> Bench:
     """Return the bench of an address, powered on at time 0; RobotFileError when its robot cannot be built."""
     robot = load(address.robot, address.overrides)
+    for label in address.open:
+        if label not in robot.labels:
+            raise RobotFileError(f"open={label}: {robot.name} has no such coil{near(label, robot.labels)}")
     profile = robot.profile.read_bytes()
     _agree(robot, profile)
     image = Image.installed(profile)
     identity = f"{robot.name} {address.seed}"
     try:
-        return Bench(parts_of(robot), RingPlant(robot), image, baud=address.baud, identity=identity)
+        plant = plant_of(robot, address.seed)
+        bench = Bench(parts_of(robot), plant, image, baud=address.baud, identity=identity)
     except (ArithmeticError, CameApart) as error:
         raise RobotFileError(f"{robot.name} cannot be built from these numbers: {error}") from error
+    for label in address.open:
+        schedule(bench, bench.clock.now_us, f"coil-open:{label}")
+    return bench
+
+
+def plant_of(robot: RobotFile, seed: int) -> Plant:
+    """Return the body of a robot; the seed makes its terrain."""
+    if robot.kind == RING:
+        return RingPlant(robot)
+    from hil_sim.sphere import SpherePlant  # noqa: PLC0415
+
+    return SpherePlant(robot, seed)
 
 
 def _agree(robot: RobotFile, profile: bytes) -> None:
@@ -46,6 +66,7 @@ def parts_of(robot: RobotFile) -> Parts:
         source_ohm=wiring.source_ohm,
         shunt_ohm=sensors.shunt_ohm,
         supply_v=wiring.supply_v,
+        battery=Battery(robot.battery) if robot.battery else None,
         ambient_degc=robot.ground.T_amb,
         ntc=Ntc(sensors.ntc_ohm, sensors.ntc_beta_k, sensors.ntc_pull_up_ohm),
     )

@@ -1,6 +1,10 @@
 """What can go wrong on the bench, by name, at a time.
 
-schedule(bench, 2_000_000, "cable-cut")
+    schedule(bench, 2_000_000, "cable-cut")
+    schedule(bench, 0, "coil-open:B10m1")
+
+`coil-open` and `coil-whole` break and mend the wire of one coil, named after a colon. `battery-empty` leaves in a
+battery on board what its protection ends at once.
 """
 
 from collections.abc import Callable
@@ -45,6 +49,11 @@ def _bus(stuck: bool) -> Callable[[Bench], None]:
     return happen
 
 
+def _battery_empty(bench: Bench) -> None:
+    if bench.supply.battery is not None:
+        bench.supply.battery.charge = 0.0
+
+
 FAULTS: dict[str, Callable[[Bench], None]] = {
     "cable-cut": _cut,
     "cable-join": _join,
@@ -61,18 +70,36 @@ FAULTS: dict[str, Callable[[Bench], None]] = {
     "pwm-dead": _pwm_dead,
     "bus-stuck": _bus(True),
     "bus-free": _bus(False),
+    "battery-empty": _battery_empty,
 }
+OF_A_COIL: dict[str, Callable[[Bench, str], None]] = {
+    "coil-open": lambda bench, label: bench.break_coil(label),
+    "coil-whole": lambda bench, label: bench.break_coil(label, broken=False),
+}
+NAMES = (*FAULTS, *OF_A_COIL)
 
 
 def schedule(bench: Bench, at_us: int, name: str) -> None:
-    """Let a fault happen at a virtual time; ValueError when there is none of that name or the time has passed."""
-    if name not in FAULTS:
-        raise ValueError(f"no fault {name!r}: known are {', '.join(FAULTS)}{near(name, FAULTS)}")
+    """Let a fault happen at a virtual time; ValueError when this bench has none of that name or the time has passed."""
+    happen = _fault(bench, name)
     if at_us < bench.clock.now_us:
         raise ValueError(f"fault {name}: time {at_us} us has passed, now {bench.clock.now_us} us")
-    bench.clock.at(at_us, lambda: _happen(bench, name))
+    bench.clock.at(at_us, lambda: _happen(bench, name, happen))
 
 
-def _happen(bench: Bench, name: str) -> None:
-    bench.journal.note(bench.clock.now_us, FAULT, list(FAULTS).index(name), name.encode())
-    FAULTS[name](bench)
+def _fault(bench: Bench, name: str) -> Callable[[Bench], None]:
+    if name == "battery-empty" and bench.supply.battery is None:
+        raise ValueError("fault battery-empty: this robot has no battery")
+    if name in FAULTS:
+        return FAULTS[name]
+    kind, _, label = name.partition(":")
+    if kind not in OF_A_COIL:
+        raise ValueError(f"no fault {name!r}: known are {', '.join(NAMES)}{near(name, NAMES)}")
+    if label not in bench.plant.labels:
+        raise ValueError(f"fault {name}: name a coil of this robot, as in {kind}:{bench.plant.labels[0]}")
+    return lambda bench: OF_A_COIL[kind](bench, label)
+
+
+def _happen(bench: Bench, name: str, happen: Callable[[Bench], None]) -> None:
+    bench.journal.note(bench.clock.now_us, FAULT, NAMES.index(name.partition(":")[0]), name.encode())
+    happen(bench)
