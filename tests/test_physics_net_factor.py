@@ -139,6 +139,12 @@ def test_what_is_not_a_number_is_refused():
     assert not factor(pattern, np.full((pattern.slots, 6, 6), np.nan))
 
 
+def test_blocks_of_another_shape_are_refused():
+    pattern = pattern_of(2, [(0, 1)])
+
+    assert not factor(pattern, np.ones((pattern.slots, 1, 1)))
+
+
 def test_the_rows_of_a_block_are_those_of_the_body_eliminated_later():
     pattern = pattern_of(3, [(0, 1), (1, 2)])
 

