@@ -16,7 +16,7 @@ from host.robot import Robot
 from host.run import Keeper, run
 from host.view import draw_run
 from host.view.body import on_paper, spring
-from host.view.instants import NEAR_MM, apart, fastest, nearby, path_mm, resting
+from host.view.instants import NEAR, apart, fastest, nearby, path_mm, resting
 from host.view.poses import coil_length_mm, shortest
 
 GAITS = Path(__file__).parents[1] / "gaits"
@@ -115,5 +115,5 @@ def test_a_ring_that_rolls_off_is_drawn_while_it_is_near(tmp_path):
 
     assert downhill.scenes[-1]["hub"][0] < -1000
     assert near.scenes[0] is downhill.scenes[0]
-    assert near.scenes[-1]["hub"][0] > -NEAR_MM
+    assert near.scenes[-1]["hub"][0] > -NEAR * 41
     assert len(near.telemetry) == len(downhill.telemetry)

@@ -8,9 +8,12 @@ from matplotlib.lines import Line2D
 
 from host.recording import Recording
 from host.view.instants import Numbers, scene_times
-from host.view.style import COILS, INK, coil_colour, coil_dash
+from host.view.style import COILS, INK, Style, coil_colour, coil_dash
 
 FAR_MM = 2000.0
+FEW = 8  # coils
+TOGETHER_S = 0.3  # peaks closer than this share one letter
+Place = tuple[float, float, str]  # time [s], height [degC], colour
 WARMED_K = 5.0  # a coil whose temperature rose by less carries no letter
 
 
@@ -19,15 +22,28 @@ def record_times(recording: Recording) -> Numbers:
     return np.array([recording.seconds(row.host_ms) for row in recording.telemetry])
 
 
+def used(recording: Recording) -> list[int]:
+    """Return which coils have curves: all of a robot with few, else those that were driven."""
+    count = len(recording.labels)
+    if count <= FEW:
+        return list(range(count))
+    return [i for i in range(count) if any(row.duty_permille[i] for row in recording.telemetry)]
+
+
 def draw_temperatures(axes: Axes, recording: Recording) -> None:
     """Draw each coil's temperature: as the robot estimates it, and dotted as it is, where an observer knows it."""
     times, seen = record_times(recording), scene_times(recording)
     estimates = np.array([row.temperature_degc for row in recording.telemetry])
-    for i, label in enumerate(recording.labels):
+    letters: dict[Place, list[str]] = {}
+    for order, i in enumerate(used(recording)):
+        label, colour = recording.labels[i], coil_colour(order)
         true = np.array([scene["coils"][label]["degc"] for scene in recording.scenes])
-        axes.plot(times, estimates[:, i], color=coil_colour(i), ls=coil_dash(i), lw=1.0)
-        axes.plot(seen, true, color=coil_colour(i), ls=":", lw=1.0)
-        _write_letter(axes, label, i, times, estimates[:, i], float(max(true, default=0.0)))
+        axes.plot(times, estimates[:, i], color=colour, ls=coil_dash(order), lw=1.0)
+        axes.plot(seen, true, color=colour, ls=":", lw=1.0)
+        place = _peak(times, estimates[:, i], float(max(true, default=0.0)), colour)
+        if place:
+            letters.setdefault(place, []).append(label)
+    _write_letters(axes, letters)
     if recording.scenes:
         styles = [Line2D([], [], color=INK, lw=1.0, label="estimated on the robot")]
         styles.append(Line2D([], [], color=INK, lw=1.0, ls=":", label="true"))
@@ -39,15 +55,17 @@ def draw_temperatures(axes: Axes, recording: Recording) -> None:
 def draw_duties(axes: Axes, recording: Recording) -> None:
     """Draw one row for each coil, as high as its duty; a full row is 100 %."""
     times = record_times(recording)
-    count = len(recording.labels)
-    for i in range(count):
-        base = count - 1 - i
+    shown = used(recording)
+    count = len(shown)
+    for order, i in enumerate(shown):
+        base = count - 1 - order
         duties = np.array([row.duty_permille[i] for row in recording.telemetry]) / 1000
         begins = np.concatenate([[0], np.flatnonzero(np.diff(duties)) + 1])
         edges = np.concatenate([times[begins], times[-1:]])
         axes.axhline(base, color="#dddddd", lw=0.4)
-        axes.stairs(base + 0.85 * duties[begins], edges, baseline=base, fill=True, color=coil_colour(i), lw=0)
-    axes.set_yticks([count - 1 - i + 0.4 for i in range(count)], list(recording.labels))
+        axes.stairs(base + 0.85 * duties[begins], edges, baseline=base, fill=True, color=coil_colour(order), lw=0)
+    axes.set_yticks([count - 1 - order + 0.4 for order in range(count)], [recording.labels[i] for i in shown])
+    axes.tick_params(axis="y", labelsize=6.5 if count <= FEW else 5.5)
     axes.tick_params(axis="y", length=0)
     axes.set_ylim(-0.1, count)
     axes.set_ylabel("duty [row: 100 %]")
@@ -70,10 +88,25 @@ def draw_travel(axes: Axes, recording: Recording) -> None:
     axes.set_ylabel("travel [m]" if far else "travel [mm]")
 
 
-def _write_letter(axes: Axes, label: str, i: int, times: Numbers, estimate: Numbers, highest_degc: float) -> None:
-    """Write a coil's letter above its first peak, if it was warmed at all."""
-    if estimate.max() > estimate[0] + WARMED_K:
-        first = int((estimate > estimate.max() - 1.0).argmax())
-        place = (times[first], max(highest_degc, float(estimate.max())))
-        shift, colour = (0, 2), coil_colour(i)
-        axes.annotate(label, place, shift, textcoords="offset points", ha="center", color=colour, fontsize=7)
+def _peak(times: Numbers, estimate: Numbers, highest_degc: float, colour: str) -> Place | None:
+    """Return time and height of a coil's first peak, if it was warmed at all, and its colour."""
+    if estimate.max() <= estimate[0] + WARMED_K:
+        return None
+    first = int((estimate > estimate.max() - 1.0).argmax())
+    return float(times[first]), max(highest_degc, float(estimate.max())), colour
+
+
+def _write_letters(axes: Axes, letters: dict[Place, list[str]]) -> None:
+    """Write each coil's letter above its first peak; of several that peak together the first, and how many more."""
+    groups: list[list[tuple[Place, str]]] = []
+    for place, label in sorted((place, label) for place, labels in letters.items() for label in labels):
+        if groups and place[0] - groups[-1][0][0][0] < TOGETHER_S:
+            groups[-1].append((place, label))
+        else:
+            groups.append([(place, label)])
+    for group in groups:
+        (t, _, colour), label = group[0]
+        text = label if len(group) == 1 else f"{label} +{len(group) - 1}"
+        highest = max(place[1] for place, _ in group)
+        style: Style = {"ha": "center", "color": colour, "fontsize": 7 if len(label) == 1 else 6}
+        axes.annotate(text, (t, highest), (0, 2), textcoords="offset points", **style)

@@ -10,7 +10,7 @@ from matplotlib.cm import ScalarMappable
 
 from host.recording import Recording, Scene
 from host.view.body import LETTER_MM, draw_body, draw_ground, draw_outline, on_paper, outline, slope_of
-from host.view.instants import apart, resting
+from host.view.instants import apart, resting, width_mm
 from host.view.style import COILS, GROUND, INK
 
 Box = tuple[float, float, float, float]  # left, right, bottom, top [mm]
@@ -20,6 +20,7 @@ LETTERS_TO_SCALE_MM = 170.0  # a longer strip is drawn smaller, and its letters 
 QUICK_MS = 100  # frames closer than this carry their milliseconds
 FRAME_LETTER_MM = 3.8  # frames are drawn at about half size
 COMMON_MM = 100.0  # frames show the same ground when all of it is no wider
+ROW = 5  # frames
 HEAD_MM = 10.0  # room for letters and time above the body
 BELOW_MM = 7.0  # room for the scale below the ground
 
@@ -49,6 +50,11 @@ def strip_extent(recording: Recording) -> Box:
     return together(extent(recording.scenes[i], strip_slope(recording)) for i in resting(recording))
 
 
+def scale_told(_: Recording) -> str:
+    """Return the words about the scale."""
+    return "scale in mm"
+
+
 def frame_boxes(recording: Recording, indexes: Iterable[int]) -> list[Box]:
     """Return the room of each frame, all of one size: of the same piece of ground unless the body went far."""
     boxes = [extent(scene, slope_of(scene)) for scene in (recording.scenes[i] for i in indexes)]
@@ -72,7 +78,7 @@ def draw_strip(axes: Axes, recording: Recording, heat: ScalarMappable) -> None:
     shown = resting(recording)
     left, right = ground_of([scenes[index] for index in shown])
     letter_mm = LETTER_MM * max(1.0, (right - left) / LETTERS_TO_SCALE_MM)
-    whole = apart(recording, shown, _width(scenes[0]) * 1.08)
+    whole = apart(recording, shown, width_mm(scenes[0]) * 1.08)
     for index in set(shown) - set(whole):
         draw_outline(axes, scenes[index], slope)
     for index in whole:
@@ -119,8 +125,3 @@ def frame(axes: Axes, box: Box) -> None:
     """Show just this box, without its lines, one millimetre the same both ways."""
     axes.set(xlim=box[:2], ylim=box[2:], aspect="equal")
     axes.set_axis_off()
-
-
-def _width(scene: Scene) -> float:
-    along = np.asarray(scene["nodes"], dtype=float)[:, 0]
-    return float(np.ptp(along))
