@@ -64,5 +64,5 @@ def bench_of(folder: Path, main: str, files: dict[str, str] | None = None, **opt
         path.write_text(text)
     roots = sorted({folder / name.partition("/")[0] for name in sources})
     plant = options.pop("plant", None) or FakePlant()
-    parts = Parts([(0x60, output) for output in range(8)], [0.5] * 8)
+    parts = Parts([(0x60, output) for output in range(8)], [0.5] * 8, battery=options.pop("battery", None))
     return Bench(parts, plant, Image(roots, {"robot.json": b"{}"}), **options)
