@@ -83,8 +83,10 @@ def robots(as_json: bool) -> None:
             robot = load(name)
         except RobotFileError as error:
             raise NoRobot(str(error)) from error
-        fields = {"robot": name, "address": f"sim:{name}", "about": robot.about, "coils": list(robot.labels)}
-        _say(as_json, fields, f"sim:{name}  {len(robot.labels)} coils {' '.join(robot.labels)}  {robot.about}")
+        address, labels = f"sim:{name}", list(robot.labels)
+        fields = {"robot": name, "address": address, "kind": robot.kind, "about": robot.about, "coils": labels}
+        coils = click.wrap_text(" ".join(labels), 100, "    ", "    ")
+        _say(as_json, fields, f"{address:13} {len(labels):2} coils  {robot.about}\n{coils}")
 
 
 def _bench(name: str, seed: int | None, slope: float | None) -> Bench:

@@ -12,8 +12,18 @@ def test_robots_lists_the_address_of_each():
     result = CliRunner().invoke(robots, ["--json"])
 
     rows = [json.loads(line) for line in result.output.splitlines()]
-    assert [row["address"] for row in rows if row["robot"] == "circular"] == ["sim:circular"]
+    assert [row["address"] for row in rows] == ["sim:circular", "sim:sphere-a", "sim:sphere-b"]
     assert rows[0]["coils"] == list("ABCDEFGH")
+    assert [row["kind"] for row in rows] == ["ring", "sphere", "sphere"]
+
+
+def test_robots_fits_a_terminal_and_names_every_coil():
+    lines = CliRunner().invoke(robots).output.splitlines()
+
+    assert max(map(len, lines)) <= 120
+    assert lines[0].startswith("sim:circular   8 coils  Eight BMX100 coils in a rubber ring")
+    assert " B10m1 B01m1 Bm10m1 B0m1m1" in " ".join(lines)
+    assert sum(line.startswith("sim:") for line in lines) == 3
 
 
 @pytest.mark.parametrize(
