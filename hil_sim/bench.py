@@ -9,7 +9,7 @@ how often, or how fast. The bench moves bytes and switches coils; it can read ne
     bench.close()
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -100,6 +100,7 @@ class Bench:
         self._soundness.look(plant.snapshot(), 0.0)
         self._peak_degc = plant.temperature.copy()
         self._energy_j = np.zeros(len(self.coils))
+        self._glance: Callable[[int], None] | None = None
         self.clock.at(GRID_US, self._grid)
         self.world.power_on()
 
@@ -163,6 +164,10 @@ class Bench:
             coil["duty"] = self.coil_gate(label)
         return seen
 
+    def watch(self, glance: Callable[[int], None]) -> None:
+        """Have `glance` called with virtual time in ms whenever the body has reached a point of its grid."""
+        self._glance = glance
+
     def close(self) -> None:
         """End the firmware; a closed bench cannot be run again."""
         self.world.close()
@@ -175,6 +180,8 @@ class Bench:
         if self.clock.now_us % EVERY_US == 0:
             self._soundness.look(self.plant.snapshot(), self.clock.now_us / 1e6)
         self.clock.at(self.clock.now_us + GRID_US, self._grid)
+        if self._glance is not None:
+            self._glance(self.clock.now_us // 1000)
         if self.world.running and self.supply.battery is not None and self.supply.battery.cut:
             self.world.power_off()
 

@@ -45,7 +45,11 @@ class Link(Protocol):
 
     @property
     def observer(self) -> Any:
-        """Return what watches the robot from outside (`observe()`, `snapshot()`), or None."""
+        """Return what watches the robot from outside, or None.
+
+        It has `observe()` and `snapshot()`, and may have `watch(glance)`: to call `glance` with the line's clock in ms
+        whenever the body has moved on while the host waits.
+        """
 
 
 def open_link(address: str) -> Link:

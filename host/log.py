@@ -59,6 +59,7 @@ TOPICS: dict[str, dict[str, Any]] = {
         "hub": {"type": "array", "items": NUMBER},
         "nodes": COORDINATES,
         "coils": {"type": "object"},
+        "energy_j": {"type": "object"},
         "observed": {"type": "object"},
     },
 }

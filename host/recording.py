@@ -1,8 +1,8 @@
 """A run as pictures and reports look back on it: the robot's telemetry and events, and what an observer saw.
 
 A scene is what the address's observer (the bench; a motion-capture system) says of one instant: `snapshot()` (hub,
-nodes and coils in the plane's own axes, mm and degrees Celsius), `observe()` under "observed" (travel_mm, ...) and the
-host's clock at that time. A real robot has no observer and its recording no scenes.
+nodes and coils in the plane's own axes, of two coordinates or three, mm and degrees Celsius), `observe()` under
+"observed" (travel_mm, ...) and the host's clock at that time. A real robot has no observer and its recording no scenes.
 
     recording = Recording(robot.profile.labels, "circular-crawl.gait on sim:circular")
     recording.note(record)                    # each Telemetry and Event

@@ -137,12 +137,25 @@ def _observed_lines(observed: Fields) -> Iterator[str]:
     for name, form in SEEN.items():
         if name in observed:
             yield f"  {name.rpartition('_')[0].replace('_', ' '):<17}{form.format(observed[name])}"
+    if observed.get("down"):
+        yield f"  {'down':<17}{observed['down']}"
+    if observed.get("jump"):
+        yield f"  {'jump':<17}{_jump_line(observed['jump'])}"
+
+
+def _jump_line(jump: Fields) -> str:
+    """Return the line about a jump."""
+    stored, released = f"stored {jump['stored_mj']:.1f} mJ", f"released {jump['released_mj']:.1f} mJ"
+    takeoff = f"take-off {jump['takeoff_m_per_s']:.2f} m/s at {jump['takeoff_s']:.2f} s"
+    return f"{stored}, {released}, {takeoff}, apex {jump['apex_mm']:.0f} mm, losses {jump['losses_mj']:.1f} mJ"
 
 
 def _rounded(value: Any) -> Any:
     """Return the value with all its numbers to a ten-thousandth of their unit."""
     if isinstance(value, dict):
         return {name: _rounded(item) for name, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_rounded(item) for item in value]
     return round(float(value), 4) if isinstance(value, float) else value
 
 

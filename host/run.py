@@ -9,9 +9,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from host.attention import Attention
 from host.errors import LinkLost, RobotFault, ScriptFailed, SoftrigError
 from host.log import LogWriter
-from host.recording import Recording
+from host.recording import Recording, Scene
 from host.records import Event, Record, Telemetry
 from host.robot import Robot
 from protocol import codes, program
@@ -34,6 +35,9 @@ class Keeper:
         self.recording = Recording(())
         self._log = log
         self._observer = observer
+        self._attention = Attention()
+        if hasattr(observer, "watch"):
+            observer.watch(self.glance)
 
     def name_coils(self, labels: tuple[str, ...]) -> None:
         """Take the labels of the coils, once the robot has told them."""
@@ -52,9 +56,25 @@ class Keeper:
         if self._log:
             self._log.record(record)
         if isinstance(record, Telemetry) and self._observer is not None:
-            self.recording.look(self._observer, record.host_ms)
-            if self._log:
-                self._log.scene(self.recording.scenes[-1])
+            self._keep(self._observer.snapshot(), record.host_ms)
+
+    def glance(self, host_ms: int) -> None:
+        """Keep what the observer sees, once telemetry comes, if the body moves quickly."""
+        if not self.recording.telemetry:
+            return
+        snapshot = self._observer.snapshot()
+        if self._attention.stirs(snapshot):
+            self._keep(snapshot, host_ms)
+
+    def _keep(self, snapshot: Scene, host_ms: int) -> None:
+        """Keep what the observer sees, unless no time has passed for the body since it was last seen."""
+        scenes = self.recording.scenes
+        if scenes and scenes[-1]["t_s"] == snapshot["t_s"]:
+            return
+        self._attention.keep(snapshot)
+        scenes.append({**snapshot, "observed": self._observer.observe(), "host_ms": host_ms})
+        if self._log:
+            self._log.scene(scenes[-1])
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,6 +16,12 @@ NODES = 24
 STEP_S = 2.5
 SNAP_S, APEX_S, LANDED_S = 4.93, 5.125, 5.325
 RISE_MM = 186.0
+DRIVEN_S = {
+    "A00m1": (0.3, 1.2),
+    **dict.fromkeys(("A101", "A011", "Am101", "A0m11"), (0.3, 1.45)),
+    **dict.fromkeys(SQUARE, (1.25, 3.85)),
+    **dict.fromkeys(("A100", "Am100", "A010", "A0m10"), (1.95, 5.0)),
+}
 MASS_KG, GRAVITY = 5e-3, 9.81
 
 
@@ -139,10 +145,6 @@ class RollingSphere:
 class JumpingSphere(RollingSphere):
     """An observer of a sphere whose bottom is pulled in, locked, and snaps out: it flies and lands."""
 
-    began_s = {"A00m1": 0.3, **dict.fromkeys(("A101", "A011", "Am101", "A0m11"), 0.3), **dict.fromkeys(SQUARE, 1.25)}
-    ended_s = {"A00m1": 1.2, **dict.fromkeys(("A101", "A011", "Am101", "A0m11"), 1.45), **dict.fromkeys(SQUARE, 3.85)}
-    equator = ("A100", "Am100", "A010", "A0m10")
-
     def observe(self):
         """Return what is told of a jump once it is done."""
         told = {"stored_mj": 36.0, "released_mj": 20.4, "takeoff_m_per_s": 1.91, "takeoff_s": 4.945}
@@ -166,22 +168,22 @@ class JumpingSphere(RollingSphere):
 
     def since_s(self, label):
         """Return how long ago a coil was first driven."""
-        began = 1.95 if label in self.equator else self.began_s.get(label)
-        return -1.0 if began is None else self.t_s - began
+        return self.t_s - DRIVEN_S[label][0] if label in DRIVEN_S else -1.0
 
     def duty(self, label):
         """Return a coil's duty: boost, then hold, until its own end."""
         since = self.since_s(label)
-        until_s = 5.0 if label in self.equator else self.ended_s.get(label, 0.0)
-        return 0.0 if since < 0 or self.t_s >= until_s else 1.0 if since < 0.72 else 0.34
+        if since < 0 or self.t_s >= DRIVEN_S[label][1]:
+            return 0.0
+        return 1.0 if since < 0.72 else 0.34
 
     def degc(self, label):
         """Return a coil's temperature: hot while driven, cooling after it."""
         since = self.since_s(label)
-        until_s = 5.0 if label in self.equator else self.ended_s.get(label, 0.0)
         if since <= 0:
             return 25.0
-        return 25.0 + 95.0 * (1 - math.exp(-since / 0.4)) * math.exp(-max(0.0, self.t_s - until_s) / 2.0)
+        cooled = math.exp(-max(0.0, self.t_s - DRIVEN_S[label][1]) / 2.0)
+        return 25.0 + 95.0 * (1 - math.exp(-since / 0.4)) * cooled
 
     def _dented(self, places):
         squash = min(0.3, 0.1 * self.t_s) if self.t_s <= SNAP_S else 0.1 * math.cos((self.t_s - SNAP_S) * 60)

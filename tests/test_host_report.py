@@ -136,3 +136,39 @@ def test_a_profile_from_a_newer_robot_may_say_more(profile):
 def test_a_profile_that_cannot_be_used_is_a_mismatch(text):
     with pytest.raises(Mismatch, match="profile cannot be read"):
         read_profile(text)
+
+
+JUMP = {
+    "stored_mj": 36.123456,
+    "released_mj": 20.4,
+    "takeoff_m_per_s": 1.912,
+    "takeoff_s": 4.94,
+    "apex_mm": 186.2,
+    "losses_mj": 11.3,
+}
+
+
+class Jumper:
+    def observe(self) -> dict:
+        return {"travel_mm": 0.0, "attitude": [1.0, 0.0, 0.123456, 0.0], "down": "A00m1", "contacts": 3, "jump": JUMP}
+
+
+def test_a_jump_is_told_in_one_line_and_whole_in_the_fields(facts):
+    fields = report(done(), recording(), replace(facts, observer=Jumper()))
+
+    (line,) = [line for line in lines(fields) if line.startswith("  jump ")]
+    assert fields["observed"]["jump"] == JUMP | {"stored_mj": 36.1235}
+    assert line.endswith("stored 36.1 mJ, released 20.4 mJ, take-off 1.91 m/s at 4.94 s, apex 186 mm, losses 11.3 mJ")
+
+
+def test_of_an_attitude_the_text_tells_only_which_coil_is_down(facts):
+    fields = report(done(), recording(), replace(facts, observer=Jumper()))
+
+    text = "\n".join(lines(fields))
+    assert fields["observed"]["attitude"] == [1.0, 0.0, 0.1235, 0.0]
+    assert "down             A00m1" in text
+    assert "attitude" not in text
+
+
+def test_a_run_without_a_jump_has_no_line_of_one(facts):
+    assert not any("jump" in line for line in lines(report(done(), recording(), facts)))

@@ -2,6 +2,8 @@
 
 check_pictures(Path("crawl.svg"))          # before the robot moves
 draw_run(recording, Path("crawl.svg"))     # film strip and curves
+draw_film(recording, Path("film.svg"))     # film strip, more frames, travel
+draw_jump(recording, Path("jump.svg"))     # flight, release and energies of a sphere
 draw_poses(recording, Path("poses.svg"))   # the ring with one coil contracted at a time
 """
 
@@ -35,12 +37,35 @@ def draw_run(recording: Recording, path: Path) -> None:
         style.save(runplot.run_figure(recording), path)
 
 
+def draw_film(recording: Recording, path: Path) -> None:
+    """Write the film of a run: the body along the ground, frames, travel; BadRequest without scenes."""
+    _check_seen(recording, path)
+    from host.view import runplot, style  # noqa: PLC0415
+
+    with style.settings():
+        style.save(runplot.film_figure(recording), path)
+
+
+def draw_jump(recording: Recording, path: Path) -> None:
+    """Write the picture of a sphere's jump: flight, release, energies; BadRequest when there was none."""
+    _check_seen(recording, path)
+    from host.view import jump, style  # noqa: PLC0415
+
+    with style.settings():
+        style.save(jump.jump_figure(recording), path)
+
+
 def draw_poses(recording: Recording, path: Path, coils: tuple[str, ...] = ("A", "C", "E", "G")) -> None:
     """Write the picture of the body at rest and with each of `coils` at its shortest; BadRequest without scenes."""
-    check_pictures(path)
-    if not recording.scenes:
-        raise BadRequest("this figure needs an observer: run it on the bench, --robot sim:circular")
+    _check_seen(recording, path)
     from host.view import poses, style  # noqa: PLC0415
 
     with style.settings():
         style.save(poses.poses_figure(recording, coils), path)
+
+
+def _check_seen(recording: Recording, path: Path) -> None:
+    """Raise BadRequest when there is nothing to draw of the body, or no picture could be written."""
+    check_pictures(path)
+    if not recording.scenes:
+        raise BadRequest("this figure needs an observer: run it on the bench, --robot sim:NAME")

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from host.recording import Recording
-from host.view.instants import Numbers, scene_times
+from host.view.instants import LEAP, Numbers, scene_times, width_mm
 from host.view.style import COILS, INK, Style
 
 KINDS = (("elastic", "stored in the shape", COILS[1]), ("kinetic", "motion", COILS[0]), ("gravity", "height", COILS[2]))
@@ -17,9 +17,11 @@ FULL = 0.95  # of the greatest energy: the shape still holds it
 
 
 def jumps(recording: Recording) -> dict[str, Any] | None:
-    """Return what the observer told last of a jump, or None when there was none."""
-    told: dict[str, Any] | None = recording.scenes[-1]["observed"].get("jump") if recording.scenes else None
-    return told
+    """Return what the observer told last of a jump, or None when there was none, or only a hop of a crawl."""
+    if not recording.scenes:
+        return None
+    told: dict[str, Any] | None = recording.scenes[-1]["observed"].get("jump")
+    return told if told and told["apex_mm"] > LEAP * width_mm(recording.scenes[0]) else None
 
 
 def energies_mj(recording: Recording, kind: str) -> Numbers:

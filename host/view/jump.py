@@ -35,7 +35,7 @@ AROUND_S = 0.03  # of the fast energies, before the release and after the landin
 def jump_figure(recording: Recording) -> Figure:
     """Return the picture; BadRequest when the body did not jump."""
     if not instants_of(recording):
-        raise BadRequest("the body never left the ground in this run: there is no jump to draw")
+        raise BadRequest("the body did not jump in this run: there is nothing to draw")
     flight, close = Flight(recording), release_of(recording)
     box, wide = march.frame_boxes(recording, close)[0], PAGE_MM - LEFT_MM - RIGHT_MM
     flight_mm = (wide - BAR_MM) * (flight.room[3] - flight.room[2]) / (flight.room[1] - flight.room[0])
