@@ -38,7 +38,7 @@ def assemble(address: Address) -> Bench:
 def plant_of(robot: RobotFile, seed: int) -> Plant:
     """Return the body of a robot; the seed makes its terrain."""
     if robot.kind == RING:
-        return RingPlant(robot)
+        return RingPlant(robot, seed)
     from hil_sim.sphere import SpherePlant  # noqa: PLC0415
 
     return SpherePlant(robot, seed)

@@ -21,6 +21,7 @@ from hil_sim.physics.bodies import StartNumbers
 from hil_sim.physics.coilset import coils_of, cold
 from hil_sim.physics.compiled import Array, bound, prepare
 from hil_sim.physics.contact import crossings
+from hil_sim.physics.flight import jump_of
 from hil_sim.physics.gauge import centre, rim_energy
 from hil_sim.physics.ring import ring_of, round_pose
 from hil_sim.physics.spokes import LENGTH, LENGTH_BEFORE, PULL
@@ -52,14 +53,14 @@ SETTLING_DRAG = 20.0  # [1/s] ASSUMED: numerical, the ring is at rest within its
 class RingPlant:
     """Coils, ring and ground of one robot, at rest at time 0; a function of the powers given to it and nothing else."""
 
-    def __init__(self, robot: RobotFile, rho: float = 0.8, tolerance: float = TOLERANCE) -> None:
+    def __init__(self, robot: RobotFile, seed: int = 0, rho: float = 0.8, tolerance: float = TOLERANCE) -> None:
         prepare(body.advance)
         numbers, start = robot.ring, robot.start
         if numbers is None or not isinstance(start, StartNumbers):
             raise ValueError(f"{robot.name} is no ring but a {robot.kind}")
         ground, count = robot.ground, len(robot.labels)
         self.labels = list(robot.labels)
-        self._ring = ring_of(numbers, ground, count)
+        self._ring = ring_of(numbers, ground, count, seed)
         self._world = body.World(ground.gravity, ground.slope, inf, abs(ground.slope) / ground.tilt_rate)
         self._tilt_after, self._taken_hold = ground.tilt_after, False
         self._method = method_of(rho, tolerance)
@@ -74,6 +75,7 @@ class RingPlant:
         self._power = np.zeros(count)
         self._parts = (self._ring, self._coils, self._state, self._world, self._method, self._motion)
         self._advance = bound(body.advance, *self._parts, self._power, 0.0)
+        self._weight = float(self._ring.mass[:-2:2].sum()) * ground.gravity
         self._start = centre(self._ring, self._motion.now[0])
         self._stored_at_start = sum(self._stored().values())
         self.observe()  # no machine code is left to be loaded later
@@ -115,6 +117,7 @@ class RingPlant:
             "peak_coil_force_n": float(tally[PEAK_FORCE]),
             "coil_degc": dict(zip(self.labels, self._state.T.tolist(), strict=True)),
             "rim_crossings": crossings(self._ring, self._motion.now[0]),
+            "jump": jump_of(self._motion.flight, self._weight, self._start[1]),
         }
 
     def snapshot(self) -> dict[str, Any]:
@@ -133,7 +136,15 @@ class RingPlant:
         t = float(self._motion.tally[TIME])
         gx, gy = body.gravity(self._world, t)
         slope_deg = degrees(np.arctan2(-gx, -gy)) if gy else 0.0
-        return {"t_s": t, "hub": [*hub, angle], "nodes": nodes, "coils": coils, "slope_deg": slope_deg}
+        return {
+            "t_s": t,
+            "hub": [*hub, angle],
+            "nodes": nodes,
+            "coils": coils,
+            "slope_deg": slope_deg,
+            "energy_j": {name.removesuffix("_j"): energy for name, energy in self._stored().items()},
+            "terrain_mm": (1e3 * np.stack(self._ring.terrain, 1)).tolist(),
+        }
 
     def energies(self) -> dict[str, float]:
         """Return what the body holds and what went in and out since the start [J]; `numerical_j` closes the balance.
@@ -167,6 +178,7 @@ class RingPlant:
         now[1:3] = 0.0
         keep = tally[[STEP, TURN]]
         tally[:] = 0.0
+        self._motion.flight[:] = 0.0
         tally[[STEP, TURN]] = keep
 
     def _take_hold(self) -> None:

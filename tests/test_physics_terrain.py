@@ -98,7 +98,7 @@ def test_the_same_seed_gives_the_same_ground_and_another_one_another():
     assert not np.array_equal(first, other)
 
 
-@pytest.mark.parametrize("numbers", [{"step": 0.001}, {"rough": 0.001}, {"rough": 0.001, "rough_length": 1e-5}])
+@pytest.mark.parametrize("numbers", [{"step": 0.001, "step_at": 0.0}, {"rough": 0.001, "rough_length": 1e-5}])
 def test_ground_that_cannot_be_made_is_refused(numbers):
     with pytest.raises(ValueError, match=" mm: "):
         terrain_of(ground(**numbers), seed=1)

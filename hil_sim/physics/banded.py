@@ -8,7 +8,7 @@ same order each time.
 A pivot that is not positive means that the step is too long for an unstable shape: `solve` then returns False.
 """
 
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.ring import AXX, AXY, AYX, AYY, BXX, BXY, BYX, BYY, DXX, DXY, DYY, HXX, HYX
 
 BAND = 6
@@ -16,7 +16,7 @@ BORDER = 8
 RHS = 7
 
 
-@kernel
+@lean
 def solve(
     blocks: Array, hub: Array, mass: Array, rhs: Array, band: Array, border: Array, corner: Array, x: Array
 ) -> bool:
@@ -28,7 +28,7 @@ def solve(
     return eliminate(band, border, corner, columns) and substitute(band, border, corner, columns, x)
 
 
-@kernel
+@lean
 def load_band(blocks: Array, mass: Array, rhs: Array, band: Array, border: Array, n: int) -> None:
     """Copy the blocks of nodes 0 .. n-3 to the band and its border."""
     for i in range(n - 2):
@@ -55,7 +55,7 @@ def load_band(blocks: Array, mass: Array, rhs: Array, band: Array, border: Array
         border[j + 1, RHS] = rhs[j + 1]
 
 
-@kernel
+@lean
 def load_corner(
     blocks: Array, hub: Array, mass: Array, rhs: Array, band: Array, border: Array, corner: Array, n: int
 ) -> None:
@@ -93,14 +93,14 @@ def load_corner(
         corner[r, RHS] = rhs[2 * n - 4 + r]
 
 
-@kernel
+@lean
 def move(blocks: Array, border: Array, block: int, i: int, column: int, a: int) -> None:
     """Put row a of a neighbour block of node i to two columns of the border."""
     for b in range(2):
         border[2 * i + a, column + b] = blocks[block + 2 * a + b, i]
 
 
-@kernel
+@lean
 def eliminate(band: Array, border: Array, corner: Array, columns: int) -> bool:
     """Factor the band in place (band[:, 0] becomes the inverse pivots) and take it away from border and corner.
 
@@ -139,7 +139,7 @@ def eliminate(band: Array, border: Array, corner: Array, columns: int) -> bool:
     return True
 
 
-@kernel
+@lean
 def reduce(band: Array, border: Array, corner: Array, columns: int) -> None:
     """Take the eliminated columns away from the corner."""
     for r in range(7):
@@ -158,7 +158,7 @@ def reduce(band: Array, border: Array, corner: Array, columns: int) -> None:
             corner[r, c] -= total
 
 
-@kernel
+@lean
 def substitute(band: Array, border: Array, corner: Array, columns: int, x: Array) -> bool:
     """Solve the corner, then the band backwards; entries that would reach past the band are zero."""
     for j in range(7):

@@ -19,12 +19,15 @@ import numpy as np
 
 from hil_sim.physics import coil
 from hil_sim.physics.coilset import Coils, CoilState
-from hil_sim.physics.compiled import Array, kernel
-from hil_sim.physics.gauge import centre, turned
+from hil_sim.physics.compiled import Array, lean
+from hil_sim.physics.contact import PUSH_X, PUSH_Y
+from hil_sim.physics.flight import watch_flight
+from hil_sim.physics.gauge import centre, rim_energy, turned
 from hil_sim.physics.motion import march
 from hil_sim.physics.ring import Ring
 from hil_sim.physics.spokes import LENGTH, freeze
 from hil_sim.physics.state import APEX, CLEARANCE, PEAK_T, STEP, TILT_WORK, TIME, TURN, Method, Motion
+from hil_sim.physics.terrain import surface
 
 COIL_STEP = 1e-3  # [s]
 
@@ -46,7 +49,7 @@ class World(NamedTuple):
     tilt_for: float
 
 
-@kernel
+@lean
 def gravity(world: World, t: float) -> tuple[float, float]:
     """Return gravity along and across the plane at time t (B1) [m/s2]."""
     part = 1.0
@@ -56,7 +59,7 @@ def gravity(world: World, t: float) -> tuple[float, float]:
     return -world.gravity * np.sin(angle), -world.gravity * np.cos(angle)
 
 
-@kernel
+@lean
 def advance(
     ring: Ring, coils: Coils, state: CoilState, world: World, method: Method, m: Motion, P: Array, duration: float
 ) -> None:
@@ -73,11 +76,12 @@ def advance(
         gx, gy = gravity(world, m.tally[TIME] + h)
         tilt(ring, world, m, gx, gy)
         march(ring, gx, gy, method, m, h)
+        watch_height(ring, m)
         left -= h
     watch(ring, state, m)
 
 
-@kernel
+@lean
 def tilt(ring: Ring, world: World, m: Motion, gx: float, gy: float) -> None:
     """Add to the tally what turning gravity to gx, gy does to the potential energy of the body."""
     before_x, before_y = gravity(world, m.tally[TIME])
@@ -87,16 +91,25 @@ def tilt(ring: Ring, world: World, m: Motion, gx: float, gy: float) -> None:
         m.tally[TILT_WORK] -= mass * ((gx - before_x) * x + (gy - before_y) * y)
 
 
-@kernel
-def watch(ring: Ring, state: CoilState, m: Motion) -> None:
-    """Bring greatest heights, greatest temperature and the unwrapped rotation up to date."""
-    q, tally = m.now[0], m.tally
+@lean
+def watch_height(ring: Ring, m: Motion) -> None:
+    """Bring the greatest heights and the highest flight up to date."""
+    q, tally, terrain = m.now[0], m.tally, ring.terrain
     _, height = centre(ring, q)
-    lowest = q[1]
-    for i in range(1, ring.nodes):
-        lowest = min(lowest, q[2 * i + 1])
+    _, rises = centre(ring, m.now[1])
+    lowest, touches = np.inf, False
+    for i in range(ring.nodes):
+        lowest = min(lowest, q[2 * i + 1] - surface(terrain, q[2 * i]))
+        touches = touches or m.ground[PUSH_X, i] != 0.0 or m.ground[PUSH_Y, i] != 0.0
     tally[APEX] = max(tally[APEX], height)
     tally[CLEARANCE] = max(tally[CLEARANCE], lowest)
+    watch_flight(m.flight, tally[TIME], touches, lowest, height, rises, rim_energy(ring, q))
+
+
+@lean
+def watch(ring: Ring, state: CoilState, m: Motion) -> None:
+    """Bring the greatest temperature and the unwrapped rotation up to date."""
+    q, tally = m.now[0], m.tally
     change = turned(ring, q) - tally[TURN]
     tally[TURN] += change - 2.0 * np.pi * np.round(0.5 * change / np.pi)
     for i in range(state.T.size):

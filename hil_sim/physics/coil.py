@@ -25,12 +25,12 @@ phase lags by about 0.3 K in a body that yields between steps. Checked in tests/
 from math import expm1
 
 from hil_sim.physics.coilset import Coils, CoilState
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.phase import settle
 from hil_sim.physics.spring import force_and_tangent, resistance
 
 
-@kernel
+@lean
 def advance(state: CoilState, dt: float, P: Array, L: Array, coils: Coils) -> None:
     r"""Advance all coils by one step at given power and length, equations (H1) to (H3); changes `state` in place.
 
@@ -64,7 +64,7 @@ def advance(state: CoilState, dt: float, P: Array, L: Array, coils: Coils) -> No
     measure(state, L, coils)
 
 
-@kernel
+@lean
 def measure(state: CoilState, L: Array, coils: Coils) -> None:
     r"""Bring force, work and resistance up to date with temperature, fraction and length; changes `state` in place.
 

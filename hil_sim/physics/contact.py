@@ -1,81 +1,107 @@
-r"""One-sided contact: rim nodes on the plane y = 0 with Coulomb friction, and the hub against the inside of the rim.
+r"""One-sided contact: rim nodes on the ground with Coulomb friction, and the hub against the inside of the rim.
 
 .. math::
-    n = \max(0, k_n d - c(d) \dot y), \quad d = -y > 0, \qquad
-    t = -k_n (x - x_a) - c(d) \dot x, \quad |t| \le \mu n                                                (C1)
+    n = \max(0, k_n d - c(d) \dot d_n), \quad d > 0, \qquad
+    t = -k_n u_t - c(d) \dot u_t, \quad |t| \le \mu n                                                    (C1)
 
-The anchor x_a is set where a node touches down and moves only while the node slips, so that |t| = mu n (return
-mapping): what stands, stands, and does not creep as velocity-regularised friction does. The damping grows with the
-depth over the first 10 um, so that forces are continuous. The hub is a disc; it is pushed off every edge that comes
-nearer than its radius.
+d is the depth of a node in the ground, along the shortest way out (`terrain`); on a plane d = -y. Its way u_t along
+the surface counts from an anchor, which is set where a node touches down and moves only while the node slips, so that
+|t| = mu n (return mapping): what stands, stands, and does not creep as velocity-regularised friction does. The
+damping grows with the depth over the first 10 um, so that forces are continuous. The hub is a disc; it is pushed off
+every edge that comes nearer than its radius.
 
 Source: return mapping is the standard treatment of elastic-plastic friction. A stiffer k_n changes where a jump goes
-by about 3 %, and a crawl hardly: tests/test_physics_ring_crawl.py. The rim against itself is in `touch`; `crossings`
-is the guard of both.
+by about 3 %, and a crawl hardly: tests/test_physics_ring_crawl.py. Corners of the ground between two nodes are in
+`corners`, the rim against itself is in `touch`; `crossings` is the guard of both.
 """
 
 import numpy as np
 
-from hil_sim.physics.compiled import Array, kernel
-from hil_sim.physics.ring import DXX, DYY, Ring
+from hil_sim.physics.compiled import Array, lean
+from hil_sim.physics.ring import DXX, DXY, DYY, Ring
 from hil_sim.physics.spokes import couple
+from hil_sim.physics.terrain import depth
 
-# Rows of the array `ground`, one column per node.
-ANCHOR, TOUCH, NORMAL, FRICTION, SLIP, NORMAL_BEFORE, FRICTION_BEFORE = range(7)
-GROUND_ROWS = 7
+# Rows of the array `ground`, one column per node: the anchor, the state of the contact and its normal, and what the
+# ground as a whole pushes on the node, now and before the step.
+ANCHOR_X, ANCHOR_Y, TOUCH, SLIP, NORMAL, FRICTION, DEPTH, NX, NY, PUSH_X, PUSH_Y, PUSH_X_BEFORE, PUSH_Y_BEFORE = range(
+    13
+)
+GROUND_ROWS = 13
 DEPTH_RAMP = 1e-5  # [m] ASSUMED: numerical, a quarter of what a standing ring sinks in
 
 
-@kernel
+@lean
 def ground_forces(ring: Ring, q0: Array, q: Array, v: Array, ground: Array, f: Array) -> None:
     """Add the pushes (C1) to f for a step that began at q0, and note them in ground [N]."""
+    terrain, plane = ring.terrain, ring.terrain.x.size == 0
     for i in range(ring.nodes):
-        depth = -q[2 * i + 1]
-        normal = friction = slip = 0.0
-        if depth > 0.0:
-            damping = ring.c_n * min(1.0, depth / DEPTH_RAMP)
-            normal = max(0.0, ring.k_n * depth - damping * v[2 * i + 1])
-            anchor = ground[ANCHOR, i] if ground[TOUCH, i] > 0.0 else q0[2 * i]
-            friction = -ring.k_n * (q[2 * i] - anchor) - damping * v[2 * i]
-            bound = ring.mu * normal
-            if abs(friction) > bound:
-                slip = 1.0
-                friction = bound if friction > 0.0 else -bound
-            f[2 * i] -= friction
-            f[2 * i + 1] -= normal
-        ground[NORMAL, i] = normal
-        ground[FRICTION, i] = friction
-        ground[SLIP, i] = slip
+        deep, nx, ny = -q[2 * i + 1], 0.0, 1.0
+        if not plane:
+            deep, nx, ny = depth(terrain, q[2 * i], q[2 * i + 1])
+        ground[DEPTH, i] = deep
+        ground[NORMAL, i] = ground[PUSH_X, i] = ground[PUSH_Y, i] = 0.0
+        if deep > 0.0:
+            press(ring, q0, q, v, i, nx, ny, ground)
+            f[2 * i] -= ground[PUSH_X, i]
+            f[2 * i + 1] -= ground[PUSH_Y, i]
 
 
-@kernel
-def ground_tangent(ring: Ring, q: Array, v: Array, ground: Array, cv: float, blocks: Array) -> None:
-    """Add the symmetric part of the derivative of `ground_forces` to blocks [N/m]."""
+@lean
+def press(ring: Ring, q0: Array, q: Array, v: Array, i: int, nx: float, ny: float, ground: Array) -> None:
+    """Note in ground how the ground with that normal pushes on node i, which is in it [N]."""
+    deep, held, slip = ground[DEPTH, i], ground[TOUCH, i] > 0.0, 0.0
+    damping = ring.c_n * min(1.0, deep / DEPTH_RAMP)
+    normal = max(0.0, ring.k_n * deep - damping * (nx * v[2 * i] + ny * v[2 * i + 1]))
+    ux = q[2 * i] - (ground[ANCHOR_X, i] if held else q0[2 * i])
+    uy = q[2 * i + 1] - (ground[ANCHOR_Y, i] if held else q0[2 * i + 1])
+    friction = -ring.k_n * (ny * ux - nx * uy) - damping * (ny * v[2 * i] - nx * v[2 * i + 1])
+    bound = ring.mu * normal
+    if abs(friction) > bound:
+        slip = 1.0
+        friction = bound if friction > 0.0 else -bound
+    ground[NX, i] = nx
+    ground[NY, i] = ny
+    ground[NORMAL, i] = normal
+    ground[FRICTION, i] = friction
+    ground[SLIP, i] = slip
+    ground[PUSH_X, i] = normal * nx + friction * ny
+    ground[PUSH_Y, i] = normal * ny - friction * nx
+
+
+@lean
+def ground_tangent(ring: Ring, v: Array, ground: Array, cv: float, blocks: Array) -> None:
+    """Add the symmetric part of the derivative of `ground_forces`, from what that noted, to blocks [N/m]."""
     for i in range(ring.nodes):
         if ground[NORMAL, i] > 0.0:
-            ramp = min(1.0, -q[2 * i + 1] / DEPTH_RAMP)
-            stiffness = ring.k_n + ring.c_n * ramp * cv
+            nx, ny = ground[NX, i], ground[NY, i]
+            ramp = min(1.0, ground[DEPTH, i] / DEPTH_RAMP)
+            along = across = ring.k_n + ring.c_n * ramp * cv
             if ramp < 1.0:
-                blocks[DYY, i] += max(0.0, -ring.c_n * v[2 * i + 1] / DEPTH_RAMP)
-            blocks[DYY, i] += stiffness
-            blocks[DXX, i] += stiffness * (1.0 - ground[SLIP, i])
+                across += max(0.0, -ring.c_n * (nx * v[2 * i] + ny * v[2 * i + 1]) / DEPTH_RAMP)
+            along *= 1.0 - ground[SLIP, i]
+            blocks[DXX, i] += across * nx * nx + along * ny * ny
+            blocks[DXY, i] += (across - along) * nx * ny
+            blocks[DYY, i] += across * ny * ny + along * nx * nx
 
 
-@kernel
+@lean
 def settle_anchors(ring: Ring, q0: Array, q: Array, ground: Array) -> None:
     """Commit the contact of an accepted step: anchors of new and of slipping nodes, none for those in the air."""
     for i in range(ring.nodes):
-        if q[2 * i + 1] < 0.0:
+        if ground[DEPTH, i] > 0.0:
             if ground[SLIP, i] > 0.0:
-                ground[ANCHOR, i] = q[2 * i] + ground[FRICTION, i] / ring.k_n
+                ground[ANCHOR_X, i] = q[2 * i] + ground[FRICTION, i] * ground[NY, i] / ring.k_n
+                ground[ANCHOR_Y, i] = q[2 * i + 1] - ground[FRICTION, i] * ground[NX, i] / ring.k_n
             elif ground[TOUCH, i] == 0.0:
-                ground[ANCHOR, i] = q0[2 * i]
+                ground[ANCHOR_X, i] = q0[2 * i]
+                ground[ANCHOR_Y, i] = q0[2 * i + 1]
             ground[TOUCH, i] = 1.0
         else:
             ground[TOUCH, i] = 0.0
 
 
-@kernel
+@lean
 def between(q: Array, n: int, i: int, k: int) -> tuple[float, float, float, float]:
     """Return distance [m], unit vector from edge k to node i (n is the hub) and the nearest place on it, 0 to 1."""
     j = 2 * (k + 1) if k + 1 < n else 0
@@ -87,7 +113,7 @@ def between(q: Array, n: int, i: int, k: int) -> tuple[float, float, float, floa
     return distance, dx / distance, dy / distance, s
 
 
-@kernel
+@lean
 def hub_forces(ring: Ring, q: Array, f: Array) -> bool:
     """Add to f what edges push on a hub that comes too near [N]; return whether any does."""
     n, any_near = ring.nodes, False
@@ -109,7 +135,7 @@ def hub_forces(ring: Ring, q: Array, f: Array) -> bool:
     return any_near
 
 
-@kernel
+@lean
 def hub_tangent(ring: Ring, q: Array, blocks: Array, hub: Array) -> None:
     """Add the stiffness along the direction of each push of `hub_forces`, shared to the two nodes of the edge [N/m]."""
     for i in range(ring.nodes):
@@ -121,7 +147,7 @@ def hub_tangent(ring: Ring, q: Array, blocks: Array, hub: Array) -> None:
                 couple(blocks, hub, node, stiffness * ux * ux, stiffness * ux * uy, stiffness * uy * uy)
 
 
-@kernel
+@lean
 def crossings(ring: Ring, q: Array) -> int:
     """Return how many pairs of edges of the rim cut each other, plus one if the hub is outside the rim."""
     n, count, winding = ring.nodes, 0, 0
@@ -136,14 +162,14 @@ def crossings(ring: Ring, q: Array) -> int:
     return count if winding != 0 else count + 1
 
 
-@kernel
+@lean
 def side(q: Array, a: int, b: int, c: int) -> float:
     """Return twice the signed area of the triangle of the points at a, b and c [m2]."""
     area: float = (q[b] - q[a]) * (q[c + 1] - q[a + 1]) - (q[b + 1] - q[a + 1]) * (q[c] - q[a])
     return area
 
 
-@kernel
+@lean
 def half_turn(q: Array, a: int, b: int, x: float, y: float) -> int:
     """Return the signed crossing of the edge from a to b with the ray from (x, y) to the right."""
     if (q[a + 1] > y) == (q[b + 1] > y):

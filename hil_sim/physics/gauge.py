@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.ring import SPIN, TX, TY, Ring
 
 
-@kernel
+@lean
 def bend_loss(ring: Ring, rim: Array) -> float:
     """Return the power lost in bending, from what `rim_forces` left in rim [W]."""
     power = 0.0
@@ -17,7 +17,7 @@ def bend_loss(ring: Ring, rim: Array) -> float:
     return ring.EI / ring.l0 * ring.tau_v * power
 
 
-@kernel
+@lean
 def turned(ring: Ring, q: Array) -> float:
     """Return by how much the rim as a whole is turned, positive forward (clockwise), -pi < turned <= pi [rad]."""
     n, x, y, sine, cosine = ring.nodes, 0.0, 0.0, 0.0, 0.0
@@ -31,7 +31,7 @@ def turned(ring: Ring, q: Array) -> float:
     return float(np.arctan2(sine, cosine))
 
 
-@kernel
+@lean
 def centre(ring: Ring, q: Array) -> tuple[float, float]:
     """Return the centre of mass of rim and hub [m]."""
     mass = x = y = 0.0
@@ -42,7 +42,7 @@ def centre(ring: Ring, q: Array) -> tuple[float, float]:
     return x / mass, y / mass
 
 
-@kernel
+@lean
 def rim_energy(ring: Ring, q: Array) -> float:
     """Return the elastic energy (R1) of the rim [J]."""
     n, energy = ring.nodes, 0.0

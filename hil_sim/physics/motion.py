@@ -18,18 +18,19 @@ and repeatability: tests/test_physics_ring_motion.py.
 import numpy as np
 
 from hil_sim.physics.banded import solve
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.contact import (
-    FRICTION,
-    FRICTION_BEFORE,
-    NORMAL,
-    NORMAL_BEFORE,
+    PUSH_X,
+    PUSH_X_BEFORE,
+    PUSH_Y,
+    PUSH_Y_BEFORE,
     ground_forces,
     ground_tangent,
     hub_forces,
     hub_tangent,
     settle_anchors,
 )
+from hil_sim.physics.corners import corner_forces, corner_tangent, settle_corners
 from hil_sim.physics.gauge import bend_loss
 from hil_sim.physics.ring import Ring, rim_forces, rim_tangent
 from hil_sim.physics.spokes import LENGTH, LENGTH_BEFORE, PULL, PULL_BEFORE, spoke_forces, spoke_tangent
@@ -58,7 +59,7 @@ ITERATIONS_MAX = 12
 CUTS_MAX = 5
 
 
-@kernel
+@lean
 def forces(ring: Ring, gx: float, gy: float, m: Motion, q: Array, v: Array, cv: float, f: Array) -> bool:
     """Write the gradient of all forces at q, v to f [N]; return whether the hub touches the rim."""
     n = ring.nodes
@@ -67,6 +68,8 @@ def forces(ring: Ring, gx: float, gy: float, m: Motion, q: Array, v: Array, cv: 
     rim_forces(ring, q, v, cv, m.rim, f)
     spoke_forces(ring, q, v, f, m.spokes)
     ground_forces(ring, m.now[0], q, v, m.ground, f)
+    if m.corners.shape[1]:
+        corner_forces(ring, m.now[0], q, v, m.corners, m.ground, f)
     for i in range(n + 1):
         f[2 * i] += ring.mass[2 * i] * (ring.drag * v[2 * i] - gx)
         f[2 * i + 1] += ring.mass[2 * i + 1] * (ring.drag * v[2 * i + 1] - gy)
@@ -75,7 +78,7 @@ def forces(ring: Ring, gx: float, gy: float, m: Motion, q: Array, v: Array, cv: 
     return hub_forces(ring, q, f)
 
 
-@kernel
+@lean
 def begin(ring: Ring, gx: float, gy: float, m: Motion) -> None:
     """Fill forces and accelerations of the present state: a body set down or let go has no past."""
     forces(ring, gx, gy, m, m.now[0], m.now[1], 0.0, m.now[3])
@@ -83,13 +86,15 @@ def begin(ring: Ring, gx: float, gy: float, m: Motion) -> None:
         m.now[2, i] = -m.now[3, i] / ring.mass[i]
 
 
-@kernel
+@lean
 def correct(ring: Ring, m: Motion, q: Array, v: Array, cv: float, ca: float, near: bool, rhs: Array, x: Array) -> bool:
     """Write Newton's correction to x; return False if the system is not positive."""
     m.hub[:] = 0.0
     rim_tangent(ring, m.rim, m.blocks)
     spoke_tangent(ring, m.spokes, cv, m.blocks, m.hub)
-    ground_tangent(ring, q, v, m.ground, cv, m.blocks)
+    ground_tangent(ring, v, m.ground, cv, m.blocks)
+    if m.corners.shape[1]:
+        corner_tangent(ring, q, m.corners, cv, m.blocks)
     if near:
         hub_tangent(ring, q, m.blocks, m.hub)
     touch_tangent(ring, q, m.pairs, m.blocks)
@@ -99,7 +104,7 @@ def correct(ring: Ring, m: Motion, q: Array, v: Array, cv: float, ca: float, nea
     return solve(m.blocks, m.hub, diagonal, rhs, m.band, m.border, m.corner, x)
 
 
-@kernel
+@lean
 def residual(ring: Ring, method: Method, m: Motion, rhs: Array) -> float:
     """Write minus the error of (I1), divided by 1 - a_f, to rhs; return its greatest entry [N]."""
     inertia, old = 1.0 / (1.0 - method.a_f), method.a_f / (1.0 - method.a_f)
@@ -114,7 +119,7 @@ def residual(ring: Ring, method: Method, m: Motion, rhs: Array) -> float:
     return float(greatest)
 
 
-@kernel
+@lean
 def place(m: Motion, method: Method, h: float) -> None:
     """Fill velocity and acceleration of the new state from its position, (I1)."""
     ca, cv = 1.0 / (method.beta * h * h), method.gamma / (method.beta * h)
@@ -126,7 +131,7 @@ def place(m: Motion, method: Method, h: float) -> None:
         new[2, i] = ca * (change - h * now[1, i]) - (0.5 / method.beta - 1.0) * now[2, i]
 
 
-@kernel
+@lean
 def attempt(ring: Ring, gx: float, gy: float, method: Method, m: Motion, h: float) -> bool:
     """Solve one step of length h for the new state; return False if it must be shorter."""
     ca = (1.0 - method.a_m) / ((1.0 - method.a_f) * method.beta * h * h)
@@ -159,7 +164,7 @@ def attempt(ring: Ring, gx: float, gy: float, method: Method, m: Motion, h: floa
     return False
 
 
-@kernel
+@lean
 def local_error(method: Method, m: Motion, h: float) -> float:
     """Return the estimated error of the new positions [m]."""
     greatest = 0.0
@@ -168,14 +173,14 @@ def local_error(method: Method, m: Motion, h: float) -> float:
     return float(abs(method.beta - 1.0 / 6.0) * h * h * greatest)
 
 
-@kernel
+@lean
 def accept(ring: Ring, m: Motion, h: float) -> None:
     """Make the new state the present one and add the work of the step to the tallies."""
     tally, ground, spokes = m.tally, m.ground, m.spokes
     for i in range(ring.nodes):
         dx, dy = m.new[0, 2 * i] - m.now[0, 2 * i], m.new[0, 2 * i + 1] - m.now[0, 2 * i + 1]
-        along = ground[FRICTION, i] + ground[FRICTION_BEFORE, i]
-        across = ground[NORMAL, i] + ground[NORMAL_BEFORE, i]
+        along = ground[PUSH_X, i] + ground[PUSH_X_BEFORE, i]
+        across = ground[PUSH_Y, i] + ground[PUSH_Y_BEFORE, i]
         tally[GROUND_WORK] += 0.5 * (along * dx + across * dy)
     for s in range(ring.feet.size):
         shortening = spokes[LENGTH_BEFORE, s] - spokes[LENGTH, s]
@@ -189,14 +194,20 @@ def accept(ring: Ring, m: Motion, h: float) -> None:
     tally[TIME] += h
     tally[STEPS] += 1.0
     settle_anchors(ring, m.now[0], m.new[0], ground)
-    ground[NORMAL_BEFORE] = ground[NORMAL]
-    ground[FRICTION_BEFORE] = ground[FRICTION]
-    spokes[LENGTH_BEFORE] = spokes[LENGTH]
-    spokes[PULL_BEFORE] = spokes[PULL]
-    m.now[:] = m.new
+    if m.corners.shape[1]:
+        settle_corners(ring, m.new[0], m.corners)
+    for i in range(ring.nodes):
+        ground[PUSH_X_BEFORE, i] = ground[PUSH_X, i]
+        ground[PUSH_Y_BEFORE, i] = ground[PUSH_Y, i]
+    for s in range(ring.feet.size):
+        spokes[LENGTH_BEFORE, s] = spokes[LENGTH, s]
+        spokes[PULL_BEFORE, s] = spokes[PULL, s]
+    for row in range(4):
+        for i in range(m.now.shape[1]):
+            m.now[row, i] = m.new[row, i]
 
 
-@kernel
+@lean
 def drag_loss(ring: Ring, v: Array) -> float:
     """Return the power that the air takes [W]."""
     power = 0.0
@@ -205,7 +216,7 @@ def drag_loss(ring: Ring, v: Array) -> float:
     return power
 
 
-@kernel
+@lean
 def march(ring: Ring, gx: float, gy: float, method: Method, m: Motion, duration: float) -> None:
     """Advance the body by exactly `duration` [s] at frozen phase of the coils, in as many steps as it takes."""
     left = duration

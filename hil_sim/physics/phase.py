@@ -20,13 +20,13 @@ for A_f > A_s >= M_s > M_f. Checked in tests/test_physics_coil_phase.py.
 from math import cos, pi, sin
 
 from hil_sim.physics.coilset import Coils
-from hil_sim.physics.compiled import kernel
+from hil_sim.physics.compiled import lean
 from hil_sim.physics.spring import tension
 
 TOLERANCE = 1e-13  # of the fraction
 
 
-@kernel
+@lean
 def ramp(s: float, start: float, end: float) -> tuple[float, float]:
     r"""Return the cosine ramp from 1 at `start` to 0 at `end` and its slope, equation (P2).
 
@@ -52,7 +52,7 @@ def ramp(s: float, start: float, end: float) -> tuple[float, float]:
     return 0.5 * (1.0 + cos(angle)), -0.5 * pi * sin(angle) / (end - start)
 
 
-@kernel
+@lean
 def settle(i: int, xi: float, T: float, B: float, L: float, coils: Coils) -> float:
     r"""Return the martensite fraction of coil i at the end of a step, equations (P1) and (P3).
 
@@ -87,7 +87,7 @@ def settle(i: int, xi: float, T: float, B: float, L: float, coils: Coils) -> flo
     return xi
 
 
-@kernel
+@lean
 def _meet(i: int, xi: float, T: float, B: float, L: float, coils: Coils, start: float, end: float,
           limit: float) -> float:  # fmt: skip
     """Return the fraction between xi and `limit` at which the coil lies on the ramp `start`..`end`."""

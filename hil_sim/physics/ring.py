@@ -22,7 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hil_sim.physics.bodies import GroundNumbers, RingNumbers
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
+from hil_sim.physics.terrain import Terrain, terrain_of
 
 # Rows of the scratch `rim`, columns padded by one on either side so that column i + 1 belongs to node or edge i.
 TX, TY, GX, GY, TENSION, INVERSE, SPIN, MOMENT, STIFF = range(9)
@@ -51,12 +52,13 @@ class Ring(NamedTuple):
     arms: Array  # attachments about the centre of the hub (2, S) [m]
     feet: NDArray[np.int64]  # node of each spoke (S,) [1]
     compass: Array  # directions of the nodes of the round ring that has not turned (2, N) [1]
+    terrain: Terrain  # surface of the ground
 
 
-def ring_of(numbers: RingNumbers, ground: GroundNumbers, spokes: int) -> Ring:
+def ring_of(numbers: RingNumbers, ground: GroundNumbers, spokes: int, seed: int = 0) -> Ring:
     """Return the constants of a ring with spokes to evenly spaced nodes, number 0 at the bottom.
 
-    Raises ValueError if the nodes cannot be shared out evenly.
+    The seed is that of the ground's roughness. Raises ValueError if the nodes cannot be shared out evenly.
     """
     p, n = numbers, numbers.nodes
     if n < 8 or n % spokes:
@@ -70,7 +72,7 @@ def ring_of(numbers: RingNumbers, ground: GroundNumbers, spokes: int) -> Ring:
     return Ring(
         n, p.EI, p.EA, p.tau_v, p.drag, 2.0 * p.R * np.sin(half), 2.0 * np.tan(half), p.damping, p.r_hub,
         ground.k_n, ground.c_n, ground.mu, mass,
-        p.attach * compass[:, feet], feet, compass,
+        p.attach * compass[:, feet], feet, compass, terrain_of(ground, seed, 2.0 * p.R),
     )  # fmt: skip
 
 
@@ -84,7 +86,7 @@ def round_pose(ring: Ring, R: float, height: float, turn: float = 0.0) -> Array:
     return q
 
 
-@kernel
+@lean
 def edge(rim: Array, q: Array, v: Array, i: int, j: int, EA: float, l0: float) -> None:
     """Fill the columns of edge i from node i to node j."""
     ex = q[2 * j] - q[2 * i]
@@ -102,7 +104,7 @@ def edge(rim: Array, q: Array, v: Array, i: int, j: int, EA: float, l0: float) -
     rim[SPIN, i + 1] = gx * (v[2 * j] - v[2 * i]) + gy * (v[2 * j + 1] - v[2 * i + 1])
 
 
-@kernel
+@lean
 def wrap(rim: Array, first: int, last: int, n: int) -> None:
     """Copy the closing columns of some rows to the padding on either side."""
     for row in range(first, last):
@@ -110,7 +112,7 @@ def wrap(rim: Array, first: int, last: int, n: int) -> None:
         rim[row, n + 1] = rim[row, 1]
 
 
-@kernel
+@lean
 def rim_forces(ring: Ring, q: Array, v: Array, cv: float, rim: Array, f: Array) -> None:
     r"""Write the gradient of (R1) with its damping to the node entries of f.
 
@@ -150,14 +152,14 @@ def rim_forces(ring: Ring, q: Array, v: Array, cv: float, rim: Array, f: Array) 
         px, py = qx, qy
 
 
-@kernel
+@lean
 def edge_force(rim: Array, e: int) -> tuple[float, float]:
     """Return the gradient that the edge in column e gives to its start, and takes from its end [N]."""
     bend = rim[MOMENT, e + 1] - rim[MOMENT, e]
     return bend * rim[GX, e] - rim[TENSION, e] * rim[TX, e], bend * rim[GY, e] - rim[TENSION, e] * rim[TY, e]
 
 
-@kernel
+@lean
 def rim_tangent(ring: Ring, rim: Array, blocks: Array) -> None:
     """Write the symmetric derivative of `rim_forces`, from what that left in rim, to the blocks of all nodes [N/m]."""
     n, EA = ring.nodes, ring.EA / ring.l0
@@ -184,7 +186,7 @@ def rim_tangent(ring: Ring, rim: Array, blocks: Array) -> None:
             blocks[row, i] = 0.0
 
 
-@kernel
+@lean
 def edge_stiffness(rim: Array, e: int, EA: float) -> tuple[float, float, float]:
     """Return xx, xy, yy of the stretch and moment stiffness of the edge in column e [N/m]."""
     tx, ty, inverse = rim[TX, e], rim[TY, e], rim[INVERSE, e]

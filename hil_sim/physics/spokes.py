@@ -12,7 +12,7 @@ differences in tests/test_physics_ring_forces.py.
 import numpy as np
 
 from hil_sim.physics.coilset import Coils
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.ring import DXX, DXY, DYY, HXP, HXX, HXY, HYP, HYX, HYY, Ring
 
 # Rows of the scratch `spokes`: length, force, tangent, direction, twist and arm of the attachment; the frozen coils;
@@ -24,7 +24,7 @@ SPOKE_ROWS = 13
 DAMPING_RAMP = 5e-5  # [m] ASSUMED: numerical, short against the stretch of a hot coil that pulls, up to 1 mm
 
 
-@kernel
+@lean
 def freeze(coils: Coils, xi: Array, spokes: Array) -> None:
     """Write stiffness, free length, solid height and stiffness below it of coils at phase xi to spokes [N/m, m]."""
     for s in range(xi.size):
@@ -34,7 +34,7 @@ def freeze(coils: Coils, xi: Array, spokes: Array) -> None:
         spokes[HARD, s] = coils.k_s[s]
 
 
-@kernel
+@lean
 def spoke_forces(ring: Ring, q: Array, v: Array, f: Array, spokes: Array) -> None:
     """Add the force (R2) of every spoke to f; note lengths, forces and directions in spokes."""
     hub = 2 * ring.nodes
@@ -70,7 +70,7 @@ def spoke_forces(ring: Ring, q: Array, v: Array, f: Array, spokes: Array) -> Non
         f[hub + 2] -= F * twist
 
 
-@kernel
+@lean
 def spoke_tangent(ring: Ring, spokes: Array, cv: float, blocks: Array, hub: Array) -> None:
     """Add the derivative of `spoke_forces`, from what that noted, to blocks and to hub (3, 3) [N/m]."""
     for s in range(ring.feet.size):
@@ -93,7 +93,7 @@ def spoke_tangent(ring: Ring, spokes: Array, cv: float, blocks: Array, hub: Arra
         hub[2, 2] += along * twist * twist + across * arm * arm + F * arm
 
 
-@kernel
+@lean
 def couple(blocks: Array, hub: Array, i: int, kxx: float, kxy: float, kyy: float) -> None:
     """Add a stiffness between node i and the centre of the hub [N/m]; the lower half of hub is enough."""
     blocks[DXX, i] += kxx

@@ -19,10 +19,10 @@ with k_R = k_e d / (pi D^2 n), k_e per unit of shear strain. Source: ratio R_A /
 """
 
 from hil_sim.physics.coilset import Coils
-from hil_sim.physics.compiled import kernel
+from hil_sim.physics.compiled import lean
 
 
-@kernel
+@lean
 def tension(i: int, L: float, xi: float, coils: Coils) -> tuple[float, float]:
     r"""Return the pull of coil i's wire and its derivative by the martensite fraction, first term of (S1).
 
@@ -49,7 +49,7 @@ def tension(i: int, L: float, xi: float, coils: Coils) -> tuple[float, float]:
     return k * x, (coils.k_M[i] - coils.k_A[i]) * x - k * coils.dL[i]
 
 
-@kernel
+@lean
 def force_and_tangent(i: int, L: float, xi: float, coils: Coils) -> tuple[float, float]:
     r"""Return the force of coil i and its tangent, equation (S1).
 
@@ -83,7 +83,7 @@ def force_and_tangent(i: int, L: float, xi: float, coils: Coils) -> tuple[float,
     return F, tangent
 
 
-@kernel
+@lean
 def resistance(i: int, L: float, xi: float, coils: Coils) -> float:
     r"""Return the resistance of coil i, equation (S3).
 

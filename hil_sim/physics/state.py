@@ -7,6 +7,8 @@ import numpy as np
 from hil_sim.physics.banded import BAND, BORDER
 from hil_sim.physics.compiled import Array
 from hil_sim.physics.contact import GROUND_ROWS
+from hil_sim.physics.corners import CORNER_ROWS
+from hil_sim.physics.flight import no_flight
 from hil_sim.physics.ring import BLOCK_ROWS, RIM_ROWS, Ring
 from hil_sim.physics.spokes import SPOKE_ROWS
 from hil_sim.physics.touch import Pairs, no_pairs
@@ -39,8 +41,10 @@ class Motion(NamedTuple):
     now: Array
     new: Array
     ground: Array
+    corners: Array
     spokes: Array
     tally: Array
+    flight: Array
     rim: Array
     blocks: Array
     hub: Array
@@ -68,7 +72,8 @@ def motion_of(ring: Ring, q: Array) -> Motion:
     tally = np.zeros(TALLIES)
     tally[STEP] = 1e-4
     return Motion(
-        now, np.zeros((4, size)), np.zeros((GROUND_ROWS, n)), np.zeros((SPOKE_ROWS, ring.feet.size)), tally,
+        now, np.zeros((4, size)), np.zeros((GROUND_ROWS, n)),
+        np.zeros((CORNER_ROWS, ring.terrain.x.size)), np.zeros((SPOKE_ROWS, ring.feet.size)), tally, no_flight(),
         np.zeros((RIM_ROWS, n + 2)), np.zeros((BLOCK_ROWS, n)), np.zeros((3, 3)), np.zeros((4, size)),
         np.zeros((size, BAND)), np.zeros((size, BORDER)), np.zeros((7, BORDER)), no_pairs(),
     )  # fmt: skip

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hil_sim.physics.bodies import GroundNumbers
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 
 FAR = 2.0  # [m] to where there is roughness on either side
 LEVEL = 1e3  # [m] to where the ground reaches
@@ -57,13 +57,14 @@ def roughness(ground: GroundNumbers, seed: int, width: float) -> tuple[Array, Ar
         raise ValueError(f"roughness correlated over {1e3 * ground.rough_length:g} mm: at least {1e3 * FINEST:g} mm")
     spacing = ground.rough_length / FINENESS
     count = ceil(FAR / spacing)
-    x = spacing * np.arange(-count, count + 1)
+    x: Array = np.linspace(-count * spacing, count * spacing, 2 * count + 1)
     near = np.arange(-2 * FINENESS, 2 * FINENESS + 1)
     weights = np.exp(-2.0 * (near / FINENESS) ** 2)
     noise = np.random.default_rng(seed).standard_normal(x.size + near.size - 1)
     smooth = np.convolve(noise, weights / np.sqrt(weights @ weights), mode="valid")
     part = np.clip(2.0 * np.abs(x) / width - 1.0, 0.0, 1.0)
-    return x, ground.rough * part * part * (3.0 - 2.0 * part) * smooth
+    z: Array = ground.rough * part * part * (3.0 - 2.0 * part) * smooth
+    return x, z
 
 
 def stepped(x: Array, z: Array, ground: GroundNumbers) -> tuple[Array, Array]:
@@ -77,7 +78,7 @@ def stepped(x: Array, z: Array, ground: GroundNumbers) -> tuple[Array, Array]:
     return np.concatenate((x[:at], [edge, edge], x[at:])), np.concatenate(heights)
 
 
-@kernel
+@lean
 def under(terrain: Terrain, x: float) -> int:
     """Return the number of the piece of the surface that lies straight under a place."""
     low, high = 0, terrain.x.size - 1
@@ -90,7 +91,7 @@ def under(terrain: Terrain, x: float) -> int:
     return low
 
 
-@kernel
+@lean
 def surface(terrain: Terrain, x: float) -> float:
     """Return the height of the ground at a place [m]."""
     if terrain.x.size == 0:
@@ -100,7 +101,7 @@ def surface(terrain: Terrain, x: float) -> float:
     return float(terrain.z[i] + rise * (x - terrain.x[i]) / run)
 
 
-@kernel
+@lean
 def depth(terrain: Terrain, x: float, z: float) -> tuple[float, float, float]:
     r"""Return how deep a point lies in the ground, and the direction of the shortest way out.
 
@@ -140,7 +141,7 @@ def depth(terrain: Terrain, x: float, z: float) -> tuple[float, float, float]:
     return best, nx, nz
 
 
-@kernel
+@lean
 def way_out(terrain: Terrain, k: int, x: float, z: float) -> tuple[float, float, float]:
     """Return distance from a point in the ground to piece k of its surface [m] and the unit vector of the way."""
     ex, ez = terrain.x[k + 1] - terrain.x[k], terrain.z[k + 1] - terrain.z[k]

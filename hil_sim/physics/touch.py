@@ -11,7 +11,7 @@ there are pairs, so nothing jumps over. ASSUMED: w = 1 mm, no friction. Checked 
 import numpy as np
 from numpy.typing import NDArray
 
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.contact import between
 from hil_sim.physics.ring import DXX, DXY, DYY, Ring
 
@@ -29,7 +29,7 @@ def no_pairs() -> Pairs:
     return np.zeros((PAIRS_MAX + 1, 2), dtype=np.int64)
 
 
-@kernel
+@lean
 def list_pairs(ring: Ring, q: Array, pairs: Pairs) -> None:
     """Fill pairs with the nodes and far edges that may touch within a step."""
     n, count = ring.nodes, 0
@@ -47,7 +47,7 @@ def list_pairs(ring: Ring, q: Array, pairs: Pairs) -> None:
     pairs[0, 0] = count
 
 
-@kernel
+@lean
 def nearest_nodes(q: Array, n: int) -> float:
     """Return the square of the least distance of two nodes that are far from each other along the rim [m2]."""
     least = np.inf
@@ -61,7 +61,7 @@ def nearest_nodes(q: Array, n: int) -> float:
     return least
 
 
-@kernel
+@lean
 def touch_forces(ring: Ring, q: Array, pairs: Pairs, f: Array) -> None:
     """Add the pushes (W1) of all pairs to f [N]."""
     for p in range(1, pairs[0, 0] + 1):
@@ -74,7 +74,7 @@ def touch_forces(ring: Ring, q: Array, pairs: Pairs, f: Array) -> None:
             f[2 * node + 1] += share * push * uy
 
 
-@kernel
+@lean
 def touch_tangent(ring: Ring, q: Array, pairs: Pairs, blocks: Array) -> None:
     """Add a diagonal bound of the stiffness of all pairs to blocks [N/m]."""
     for p in range(1, pairs[0, 0] + 1):
@@ -89,7 +89,7 @@ def touch_tangent(ring: Ring, q: Array, pairs: Pairs, blocks: Array) -> None:
                 blocks[DYY, node] += stiffness * uy * uy
 
 
-@kernel
+@lean
 def leaps(q0: Array, q1: Array, pairs: Pairs) -> bool:
     """Return whether a node moved too far in a step that has pairs."""
     if pairs[0, 0] == 0:
