@@ -44,6 +44,8 @@ class Commands:
             if not self.upload.go_on():
                 return
             self._armed()
+            if self.upload.needs_attitude and not self._core.attitude.known:
+                raise Refused(codes.NO_ATTITUDE)
         except Refused as refused:
             self._refuse(request, refused)
         else:
@@ -93,8 +95,9 @@ class Commands:
             messages.STATUS, request=seq, state=core.state, code=core.code, uptime_ms=core.now_ms & 0xFFFFFFFF,
             lease_ms=core.lease_left_ms(), step=core.player.step, coils=core.channels.on_mask,
             supply_mv=core.sense.supply_mv, current_ma=core.sense.current_ma,
-            board_decidegc=core.sense.board_decidegc, dropped=core.link.decoder.dropped & 0xFFFF,
-            overruns=core.overruns & 0xFFFF,
+            board_decidegc=core.sense.board_decidegc, roll_decideg=core.attitude.roll_decideg(),
+            pitch_decideg=core.attitude.pitch_decideg(), down=core.attitude.down_channel(),
+            dropped=core.link.decoder.dropped & 0xFFFF, overruns=core.overruns & 0xFFFF,
         )  # fmt: skip
         return True
 

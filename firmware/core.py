@@ -6,11 +6,12 @@ nothing. `control` is the part that must never allocate memory: sensing, guardin
 
 from binascii import crc32
 
+from firmware.attitude import Attitude, Blind
 from firmware.channels import Channels, Refused
 from firmware.commands import Commands
 from firmware.greetings import Greetings
 from firmware.guard import Guard
-from firmware.player import FINISHED, GUARDED, TIMED_OUT, Player
+from firmware.player import FINISHED, GUARDED, LOST, TIMED_OUT, Player
 from firmware.reports import Reports
 from firmware.sense import Sense
 from protocol import codes, messages
@@ -44,7 +45,8 @@ class Core:
         self.channels = Channels(outputs, profile.coil, profile.supply.at_once_max)
         self.sense = Sense(board, self.monitor, self.channels.count, profile)
         self.guard = Guard(profile, self.sense, self.channels, board)
-        self.player = Player(self.channels, self.sense)
+        self.attitude = _attitude(board, profile)
+        self.player = Player(self.channels, self.sense, self.attitude)
         self.commands = Commands(self)
         self.greetings = Greetings(self)
         self.link = Link(crc32(self.dictionary))
@@ -73,6 +75,7 @@ class Core:
         """Sense, guard, sequence and drive once; return the code of a fault, or 0. Allocates nothing."""
         self.sense.update(now_ms, self.channels.on_mask, self.channels.duty_permille)
         self.sense.read()
+        self.attitude.look(now_ms)
         powered = messages.ARMED <= self.state <= messages.RUNNING
         code = self.guard.check(now_ms, powered)
         if not code and self.state == messages.RUNNING:
@@ -175,6 +178,8 @@ class Core:
             chip.begin()
         self.channels.forget_written()
         self.monitor.begin()
+        if not self.attitude.known:
+            self.attitude.begin(self.now_ms)
 
     def _receive(self, data: bytes) -> None:
         if self._stop.feed(data):
@@ -213,7 +218,7 @@ class Core:
             self.guard.channel = refused.channel
             self.guard.value = refused.value
             return codes.REFUSED_STEP
-        return codes.GUARD if outcome == GUARDED else 0
+        return codes.GUARD if outcome == GUARDED else codes.ATTITUDE if outcome == LOST else 0
 
     def _end_program(self) -> None:
         if self.state != messages.RUNNING:
@@ -233,6 +238,7 @@ class Core:
                 raise OSError(chip.address)
         if not self.monitor.configured():
             raise OSError(self.monitor.address)
+        self.attitude.check(self.now_ms)
         self._turn = 0
 
     def _all_off(self) -> None:
@@ -253,3 +259,10 @@ def _chips(board, profile) -> dict:
         if channel.chip not in chips:
             chips[channel.chip] = board.pwm(channel.chip)
     return chips
+
+
+def _attitude(board, profile):
+    """Return what knows where down is, or nothing of the kind where the profile names no sensor."""
+    if not profile.imu_address:
+        return Blind()
+    return Attitude(board.imu(profile.imu_address), [channel.label for channel in profile.channels])

@@ -9,18 +9,20 @@ from array import array
 from protocol import program
 
 OPS_PER_STEP = 32
-RUNNING, FINISHED, TIMED_OUT, GUARDED = 0, 1, 2, 3
+RUNNING, FINISHED, TIMED_OUT, GUARDED, LOST = 0, 1, 2, 3, 4  # LOST: it asked where down is, and nobody knows
 
 
 class Player:
     """One program and where it stands."""
 
-    def __init__(self, channels, sense) -> None:
+    def __init__(self, channels, sense, attitude) -> None:
         self.step = 0  # number the program gave the step that runs, 0: none yet
         self.code = b""
         self.outcome = FINISHED
         self._channels = channels
         self._sense = sense
+        self._attitude = attitude
+        self._blind = False
         self._at = 0
         self._cursor_ms = 0
         self._wait_until_ms = 0
@@ -30,9 +32,10 @@ class Player:
         self._loop_left = array("H", [0] * program.DEPTH_MAX)
         self._guards = array("H", [0] * program.GUARDS_MAX)
         self._guard_count = 0
+        self._chosen = array("B", [0] * program.AIMS_MAX)
         self._acts = (
             self._halt, self._fire, self._fire, self._delay, self._repeat,
-            self._next, self._wait, self._guard, self._name, self._off,
+            self._next, self._wait, self._guard, self._name, self._off, self._aim, self._aimed,
         )  # fmt: skip
 
     def load(self, code: bytes, now_ms: int) -> None:
@@ -48,7 +51,9 @@ class Player:
 
     def run(self, now_ms: int) -> int:
         """Go on as far as the time allows; return the outcome so far. Passes Refused on."""
-        self.outcome = GUARDED if self._guarded() else self._run_ops(now_ms)
+        self._blind = False
+        outcome = GUARDED if self._guarded() else self._run_ops(now_ms)
+        self.outcome = LOST if self._blind else outcome
         return self.outcome
 
     def _run_ops(self, now_ms: int) -> int:
@@ -126,6 +131,33 @@ class Player:
         self._channels.off(program.number(self.code, self._at + 1, 4), now_ms)
         return self._go_on()
 
+    def _aim(self, now_ms: int) -> int:
+        """Choose the coil that stands so many places after the one nearest to down in a circle."""
+        if not self._attitude.known:
+            return LOST
+        code, circle = self.code, self._at + 3
+        count = nearest = most = 0
+        while count < program.CIRCLE_MAX and code[circle + count] != program.NO_COIL:
+            nearness = self._attitude.nearness(code[circle + count])
+            if count == 0 or nearness > most:
+                most = nearness
+                nearest = count
+            count += 1
+        self._chosen[code[self._at + 1]] = code[circle + (nearest + code[self._at + 2]) % count]
+        return self._go_on()
+
+    def _aimed(self, now_ms: int) -> int:
+        code, at = self.code, self._at
+        self._channels.fire(
+            1 << self._chosen[code[at + 1]],
+            program.number(code, at + 2, 2),
+            program.number(code, at + 4, 2),
+            self._cursor_ms,
+            program.number(code, at + 6, 2),
+            program.number(code, at + 8, 2),
+        )
+        return self._go_on()
+
     def _go_on(self) -> int:
         self._at += program.SIZES[self.code[self._at]]
         return -1
@@ -139,18 +171,29 @@ class Player:
     def _holds(self, at: int) -> bool:
         """Evaluate the condition that stands at `at`, without building it."""
         code = self.code
-        source = code[at]
+        source, quantifier = code[at], code[at + 1] & 15
+        compare = code[at + 1] >> 4
+        if source in program.OF_ATTITUDE and not self._attitude.known:
+            self._blind = True
+            return False
+        mask = program.number(code, at + 4, 4)
+        if quantifier == program.CHOSEN:
+            mask = 1 << self._chosen[mask]
+        if source == program.DOWN:
+            return mask >> self._attitude.down_channel() & 1 == compare
         value = program.number(code, at + 2, 2)
         value = value - 0x10000 if value & 0x8000 else value
-        above = code[at + 1] >> 4 == program.ABOVE
-        if source != program.TEMPERATURE:
-            return _compare(self._reading(source), value, above)
-        return self._any_or_all(program.number(code, at + 4, 4), value, above, code[at + 1] & 15 == program.ALL)
+        if source in program.OF_COILS:
+            return self._any_or_all(source, mask, value, compare == program.ABOVE, quantifier == program.ALL)
+        return _compare(self._reading(source), value, compare == program.ABOVE)
 
-    def _any_or_all(self, mask: int, value: int, above: bool, want_all: bool) -> bool:
+    def _any_or_all(self, source: int, mask: int, value: int, above: bool, want_all: bool) -> bool:
+        sense = self._sense
         for channel in range(self._channels.count):
             if mask >> channel & 1:
-                holds = _compare(self._sense.temperature_millidegc[channel] // 100, value, above)
+                hot = source == program.TEMPERATURE
+                reading = sense.temperature_millidegc[channel] // 100 if hot else sense.heat_uj[channel] // 1000
+                holds = _compare(reading, value, above)
                 if holds != want_all:
                     return holds
         return want_all
@@ -160,6 +203,10 @@ class Player:
             return self._sense.current_ma
         if source == program.VOLTAGE:
             return self._sense.supply_mv
+        if source == program.ROLL:
+            return self._attitude.roll_decideg()
+        if source == program.PITCH:
+            return self._attitude.pitch_decideg()
         return self._sense.board_decidegc
 
 

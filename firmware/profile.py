@@ -33,6 +33,7 @@ class Profile:
         self.lease_ms = data["session"]["lease_ms"]
         self.lease_max_ms = data["session"]["lease_max_ms"]
         self.program_bytes_max = data["program"]["bytes_max"]
+        self.imu_address = data["imu"]["address"] if "imu" in data else 0  # of the attitude sensor, 0: has none
 
 
 class Coil:

@@ -1,6 +1,6 @@
 """What the core tells its host: events, surely and once; telemetry, at the period that was asked for."""
 
-from protocol import messages
+from protocol import codes, messages
 
 ROOM = 8  # places of the link's queue that events leave to answers
 
@@ -25,7 +25,7 @@ class Reports:
             core.link.send(messages.EVENT.number, payload, core.now_ms)
 
     def tell(self) -> None:
-        """Send what the control step left to tell: a new step, coils that were cut off, telemetry that is due."""
+        """Send what the control step left to tell: a step, coils cut off, a lost sensor, telemetry that is due."""
         core = self._core
         if core.player.step != self._step:
             self._step = core.player.step
@@ -33,6 +33,9 @@ class Reports:
                 self.event(messages.STEP)
         if core.channels.cut_off_mask:
             self._cut_offs(core)
+        if core.attitude.lost:
+            core.attitude.lost = False
+            self.event(messages.LOST, codes.ATTITUDE)
         if self.period_ms and core.now_ms - self._due_ms >= 0:
             self._due_ms = core.now_ms + self.period_ms
             core.link.post(messages.TELEMETRY.number, self._telemetry(core))
@@ -54,7 +57,9 @@ class Reports:
             records[4 * channel + 3] = temperature >> 8 & 0xFF
         return messages.TELEMETRY.pack(
             now_ms=self._now(), state=core.state, step=core.player.step, supply_mv=core.sense.supply_mv,
-            current_ma=core.sense.current_ma, board_decidegc=core.sense.board_decidegc, channels=records,
+            current_ma=core.sense.current_ma, board_decidegc=core.sense.board_decidegc,
+            roll_decideg=core.attitude.roll_decideg(), pitch_decideg=core.attitude.pitch_decideg(),
+            down=core.attitude.down_channel(), channels=records,
         )  # fmt: skip
 
     def _now(self) -> int:

@@ -4,6 +4,7 @@ from binascii import crc32
 
 from firmware.channels import Refused
 from protocol import codes, program
+from protocol.verify import Check
 
 OPS_PER_STEP = 32
 
@@ -14,6 +15,7 @@ class Upload:
     def __init__(self, profile) -> None:
         self.code = bytearray(0)
         self.outlives_host = False  # it runs on when the lease runs out
+        self.needs_attitude = False  # as the verification found
         self.request = -1  # number of the start that waits for the verification, -1: none
         self._profile = profile
         self._header = None
@@ -49,7 +51,7 @@ class Upload:
         if crc32(self.code) != self._header.crc:
             raise Refused(codes.BAD_CODE, 255, len(self.code))
         try:
-            self._check = program.Check(self.code, len(self._profile.channels), self._profile.program_bytes_max)
+            self._check = Check(self.code, len(self._profile.channels), self._profile.program_bytes_max)
         except program.BadProgram as bad:
             raise Refused(codes.BAD_CODE, 255, bad.at) from None
         self.request = request
@@ -57,6 +59,8 @@ class Upload:
     def go_on(self) -> bool:
         """Verify some more; return whether the whole may run, or raise Refused."""
         try:
-            return self._check.go_on(OPS_PER_STEP)
+            done = self._check.go_on(OPS_PER_STEP)
         except program.BadProgram as bad:
             raise Refused(codes.BAD_CODE, 255, bad.at) from None
+        self.needs_attitude = self._check.needs_attitude
+        return done

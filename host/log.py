@@ -42,6 +42,9 @@ TOPICS: dict[str, dict[str, Any]] = {
         "state": TEXT,
         "duty_permille": BY_COIL,
         "temperature_degc": BY_COIL,
+        "roll_deg": {"type": ["number", "null"]},
+        "pitch_deg": {"type": ["number", "null"]},
+        "down": {"type": ["string", "null"]},
     },
     "events": {
         **dict.fromkeys(("host_ms", "now_ms", "code", "step", "value"), NUMBER),

@@ -93,6 +93,7 @@ class Profile:
     session: SessionLimits
     program: ProgramLimits
     crc: int
+    imu: dict[str, int] | None = None  # address of the attitude sensor, where there is one
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -137,6 +138,7 @@ def read_profile(text: bytes) -> Profile:
             session=_taken(SessionLimits, data["session"]),
             program=_taken(ProgramLimits, data["program"]),
             crc=crc32(text),
+            imu=data.get("imu"),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise Mismatch(f"the robot's profile cannot be read ({error}): its firmware is of another version") from error

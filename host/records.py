@@ -10,7 +10,7 @@ import struct
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from protocol import messages
+from protocol import messages, program
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,6 +26,9 @@ class Telemetry:
     board_degc: float
     duty_permille: tuple[int, ...]
     temperature_degc: tuple[float, ...]
+    roll_deg: float | None = None  # None, as the two below: the robot does not know how it lies
+    pitch_deg: float | None = None
+    down: str | None = None  # the coil whose direction is nearest to down
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,12 +71,15 @@ class Status:
     board_degc: float
     dropped: int
     overruns: int
+    roll_deg: float | None = None
+    pitch_deg: float | None = None
+    down: str | None = None
 
 
 Record = Telemetry | Event | Stopped
 
 
-def telemetry_of(payload: bytes, host_ms: int) -> Telemetry:
+def telemetry_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Telemetry:
     """Return the record of that payload; ValueError when it is none."""
     row = messages.TELEMETRY.unpack(payload)
     if len(row.channels) % 4:
@@ -89,6 +95,7 @@ def telemetry_of(payload: bytes, host_ms: int) -> Telemetry:
         row.board_decidegc / 10,
         words[0::2],
         tuple([decidegc / 10 for decidegc in words[1::2]]),
+        **_attitude(row, labels),
     )
 
 
@@ -121,7 +128,19 @@ def status_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Status:
         board_degc=row.board_decidegc / 10,
         dropped=row.dropped,
         overruns=row.overruns,
+        **_attitude(row, labels),
     )
+
+
+def _attitude(row: Any, labels: tuple[str, ...]) -> dict[str, Any]:
+    """Return how the robot lies, or nothing where it does not know."""
+    if row.down == program.NO_COIL:
+        return {}
+    return {
+        "roll_deg": row.roll_decideg / 10,
+        "pitch_deg": row.pitch_decideg / 10,
+        "down": coil_name(row.down, labels),
+    }
 
 
 def state_name(state: int) -> str:

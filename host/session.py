@@ -185,7 +185,7 @@ class Session:
     def _understood(self, kind: int, payload: bytes, now_ms: int) -> Record | None:
         labels = self.profile.labels if self.profile else ()
         if kind == messages.TELEMETRY.number:
-            self.last = telemetry_of(payload, now_ms)
+            self.last = telemetry_of(payload, labels, now_ms)
             self._compare(self.last.now_ms, self._expected_ms(self._read_ms, LATE_MS), self.last.state, now_ms)
             return self.last
         if kind == messages.EVENT.number:

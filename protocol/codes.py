@@ -11,10 +11,11 @@ Code = namedtuple("Code", ("number", "name", "unit", "cause", "did", "todo"))
 NOT_ARMED, TRIPPED, UNKNOWN_CHANNEL, DUTY_LIMIT, HOLD_LIMIT, LEASE_HELD = 1, 2, 3, 4, 5, 6
 AT_ONCE_LIMIT, RESTING, BAD_PAYLOAD, UNKNOWN_MESSAGE, BAD_HEADER, OTHER_ROBOT = 7, 8, 9, 10, 11, 12
 TOO_LARGE, BAD_CODE, BUSY, NO_PROGRAM, LEASE_LIMIT, CAUSE_REMAINS = 13, 14, 15, 16, 17, 18
-OTHER_VERSION = 19
+OTHER_VERSION, NO_ATTITUDE = 19, 20
 STOP, ESTOP, LEASE_EXPIRED, HEAT_BUDGET, OVER_TEMPERATURE, OVER_CURRENT = 101, 102, 103, 104, 105, 106
 SUPPLY_LOW, CHIP, SENSOR, GUARD, WAIT_TIMEOUT, WATCHDOG = 107, 108, 109, 110, 111, 112
 STRAY_CURRENT, ON_TOO_LONG, REFUSED_STEP, SUPPLY_HIGH = 113, 114, 115, 116
+ATTITUDE = 117
 
 NOTHING = "Nothing changed."
 ALL_OFF = "All coils off, latched until clear."
@@ -135,6 +136,12 @@ CODES = (
         "Update the older of the two.",
     ),
     Code(
+        NO_ATTITUDE, "R20", "",
+        "The program asks where down is, and the robot has no attitude sensor or has lost it.",
+        NOTHING,
+        "Run it on a robot with an attitude sensor; `softrig status` shows whether it works.",
+    ),
+    Code(
         STOP, "F01", "",
         "A stop was received.",
         ALL_OFF,
@@ -229,6 +236,12 @@ CODES = (
         "The supply voltage is above its limit: the coils would burn.",
         ALL_OFF,
         "Set the supply to the robot's own voltage; `softrig info` prints it.",
+    ),
+    Code(
+        ATTITUDE, "F17", "",
+        "The attitude sensor does not answer, is another chip, or its readings do not change.",
+        "All coils off, latched, if the program asks where down is; else only told.",
+        "Check the sensor and its bus, then `softrig clear`.",
     ),
 )  # fmt: skip
 

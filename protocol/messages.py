@@ -25,8 +25,8 @@ _OutOfRange = getattr(struct, "error", ValueError)  # MicroPython has no struct.
 STATES = ("boot", "idle", "armed", "running", "tripped")
 BOOT, IDLE, ARMED, RUNNING, TRIPPED = 0, 1, 2, 3, 4
 
-EVENTS = ("", "started", "step", "finished", "aborted", "tripped", "disarmed", "cleared", "cut-off")
-STARTED, STEP, FINISHED, ABORTED, TRIP, DISARMED, CLEARED, CUT_OFF = 1, 2, 3, 4, 5, 6, 7, 8
+EVENTS = ("", "started", "step", "finished", "aborted", "tripped", "disarmed", "cleared", "cut-off", "lost")
+STARTED, STEP, FINISHED, ABORTED, TRIP, DISARMED, CLEARED, CUT_OFF, LOST = 1, 2, 3, 4, 5, 6, 7, 8, 9
 
 VIEWER, HOLDER = 0, 1
 
@@ -187,6 +187,9 @@ STATUS = Message(
     Field("supply_mv", "H", "Supply voltage at the coils' rail."),
     Field("current_ma", "H", "Supply current."),
     Field("board_decidegc", "h", "Temperature of the board."),
+    Field("roll_decideg", "h", "Lean to the right; 0 when the attitude is not known."),
+    Field("pitch_decideg", "h", "Turn forward since upright, -180 to 180 deg; 0 when the attitude is not known."),
+    Field("down", "B", "Channel of the coil whose direction is nearest to down; 255: the attitude is not known."),
     Field("dropped", "H", "Damaged frames since boot, modulo 65536."),
     Field("overruns", "H", "Control steps that came late, modulo 65536."),
 )  # fmt: skip
@@ -198,6 +201,9 @@ TELEMETRY = Message(
     Field("supply_mv", "H", "Supply voltage at the coils' rail."),
     Field("current_ma", "H", "Supply current."),
     Field("board_decidegc", "h", "Temperature of the board."),
+    Field("roll_decideg", "h", "Lean to the right; 0 when the attitude is not known."),
+    Field("pitch_decideg", "h", "Turn forward since upright, -180 to 180 deg; 0 when the attitude is not known."),
+    Field("down", "B", "Channel of the coil whose direction is nearest to down; 255: the attitude is not known."),
     Field("channels", "s", "Per channel: duty u16 [permille], estimated temperature i16 [0.1 C]."),
 )  # fmt: skip
 EVENT = Message(

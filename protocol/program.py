@@ -4,19 +4,22 @@ A program is a 16-byte header and its code. Each op is one byte followed by litt
 bounded, so a program always ends. The robot verifies the whole before it runs any of it.
 
     code = fire(0b1, 1000, 700) + delay(700) + halt()
-    check_code(code, channels=8, bytes_max=4096)
+    verify.check_code(code, channels=8, bytes_max=4096)
 """
 
 from binascii import crc32
 from collections import namedtuple
 
-HALT, FIRE, RAMP, DELAY, REPEAT, NEXT, WAIT, GUARD, STEP, OFF = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9
-NAMES = ("halt", "fire", "ramp", "delay", "repeat", "next", "wait", "guard", "step", "off")
-SIZES = (1, 11, 13, 5, 3, 1, 14, 9, 3, 5)
+HALT, FIRE, RAMP, DELAY, REPEAT, NEXT, WAIT, GUARD, STEP, OFF, AIM, AIMED = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11
+NAMES = ("halt", "fire", "ramp", "delay", "repeat", "next", "wait", "guard", "step", "off", "aim", "aimed")
+SIZES = (1, 11, 13, 5, 3, 1, 14, 9, 3, 5, 11, 10)
 
-TEMPERATURE, CURRENT, VOLTAGE, BOARD = 1, 2, 3, 4  # sources of a condition
-ANY, ALL = 0, 1
+TEMPERATURE, CURRENT, VOLTAGE, BOARD, HEAT, ROLL, PITCH, DOWN = 1, 2, 3, 4, 5, 6, 7, 8  # sources of a condition
+OF_COILS = (TEMPERATURE, HEAT, DOWN)  # those that ask about the coils of the mask
+OF_ATTITUDE = (ROLL, PITCH, DOWN)
+ANY, ALL, CHOSEN = 0, 1, 2  # CHOSEN: the mask is the number of the place that holds an aimed coil
 BELOW, ABOVE = 0, 1
+IS_NOT, IS = 0, 1  # how DOWN compares
 ABORT, CONTINUE = 0, 1  # what a wait does when its time is over
 
 FORMAT = 1
@@ -24,6 +27,9 @@ HEADER_BYTES = 16
 OUTLIVES_HOST = 1  # header flag: keeps running when the lease runs out
 DEPTH_MAX = 8
 GUARDS_MAX = 8
+AIMS_MAX = 4  # places for coils that the robot chose
+CIRCLE_MAX = 8  # coils of a circle
+NO_COIL = 255  # fills a circle that has fewer
 
 Header = namedtuple("Header", ("flags", "robot_crc", "length", "crc"))
 Condition = namedtuple("Condition", ("source", "quantifier", "compare", "value", "mask"))
@@ -82,6 +88,17 @@ def off(mask: int) -> bytes:
     return _op(OFF, (mask, 4))
 
 
+def aim(place: int, ahead: int, circle: list) -> bytes:
+    """Choose the coil that stands `ahead` places after the one nearest to down in `circle`, and keep it in `place`."""
+    rest = [NO_COIL] * (CIRCLE_MAX - len(circle))
+    return _op(AIM, (place, 1), (ahead % len(circle), 1)) + bytes(circle + rest)
+
+
+def aimed(place: int, duty_permille: int, time_ms: int, cutoff_decidegc: int = 0, ramp_ms: int = 0) -> bytes:
+    """As `ramp`, for the coil that `aim` chose and kept in `place`."""
+    return _op(AIMED, (place, 1), (duty_permille, 2), (time_ms, 2), (cutoff_decidegc, 2), (ramp_ms, 2))
+
+
 def halt() -> bytes:
     """End the program once every coil it fired has ended."""
     return _op(HALT)
@@ -117,57 +134,13 @@ def read_condition(code: bytes, at: int) -> Condition:
     return Condition(code[at], code[at + 1] & 15, code[at + 1] >> 4, value, number(code, at + 4, 4))
 
 
-def check_code(code: bytes, channels: int, bytes_max: int) -> None:
-    """Raise BadProgram unless the whole code may be run, see Check."""
-    check = Check(code, channels, bytes_max)
-    while not check.go_on(len(code)):
-        pass
-
-
-class Check:
-    """Verifies a code piece by piece, so that a control step need not wait for all of it.
-
-    Every op is whole and known, loops nest, guards are few, and the code ends with HALT; else BadProgram. Limits of
-    duty and time are not looked at here: the channels hold every order against them as it runs.
-    """
-
-    def __init__(self, code: bytes, channels: int, bytes_max: int) -> None:
-        if not 0 < len(code) <= bytes_max:
-            raise BadProgram(f"{len(code)} bytes of code, at most {bytes_max}")
-        self._code = code
-        self._channels = channels
-        self._at = 0
-        self._op = HALT
-        self._depth = 0
-        self._guards = 0
-
-    def go_on(self, ops: int) -> bool:
-        """Look at that many more ops; return whether all has been seen."""
-        for _ in range(ops):
-            if self._at == len(self._code):
-                break
-            self._one()
-        if self._at < len(self._code):
-            return False
-        if self._op != HALT or self._depth or self._guards > GUARDS_MAX:
-            raise BadProgram(f"needs a halt at its end, closed loops and at most {GUARDS_MAX} guards", self._at)
-        return True
-
-    def _one(self) -> None:
-        op, at = self._code[self._at], self._at
-        if op >= len(SIZES) or at + SIZES[op] > len(self._code):
-            raise BadProgram(f"op {op} unknown or cut short", at)
-        self._depth += (op == REPEAT) - (op == NEXT)
-        self._guards += op == GUARD
-        if self._depth < 0 or self._depth > DEPTH_MAX:
-            raise BadProgram(f"loops nested {self._depth} deep, at most {DEPTH_MAX}", at)
-        _check_arguments(self._code, at, self._channels)
-        self._op = op
-        self._at += SIZES[op]
+def read_circle(code: bytes, at: int) -> list:
+    """Return the channels of the circle in the `aim` that stands at `at`."""
+    return [channel for channel in code[at + 3 : at + 3 + CIRCLE_MAX] if channel != NO_COIL]
 
 
 def disassemble(code: bytes) -> list[tuple]:
-    """Return (offset, name, arguments...) of each op of a code that `check_code` takes."""
+    """Return (offset, name, arguments...) of each op of a code that `verify.check_code` takes."""
     rows = []
     at = 0
     while at < len(code):
@@ -185,29 +158,11 @@ def _arguments(code: bytes, at: int) -> tuple:
         return (read_condition(code, at + 1), number(code, at + 9, 4), code[at + 13])
     if op == GUARD:
         return (read_condition(code, at + 1),)
+    if op == AIM:
+        return (code[at + 1], code[at + 2], read_circle(code, at))
+    if op == AIMED:
+        return (code[at + 1],) + tuple([number(code, at + i, 2) for i in (2, 4, 6, 8)])
     return () if SIZES[op] == 1 else (number(code, at + 1, SIZES[op] - 1),)
-
-
-def _check_arguments(code: bytes, at: int, channels: int) -> None:
-    op = code[at]
-    if op in (FIRE, RAMP, OFF) and not 0 < number(code, at + 1, 4) < 1 << channels:
-        raise BadProgram(f"coils {number(code, at + 1, 4):#x}, this robot has {channels}", at)
-    if op in (FIRE, RAMP) and number(code, at + 5, 2) > 1000:
-        raise BadProgram(f"duty {number(code, at + 5, 2)} permille, at most 1000", at)
-    if op == REPEAT and number(code, at + 1, 2) == 0:
-        raise BadProgram("a loop of no turns", at)
-    if op in (WAIT, GUARD):
-        _check_condition(read_condition(code, at + 1), channels, at)
-    if op == WAIT and code[at + 13] not in (ABORT, CONTINUE):
-        raise BadProgram(f"a wait that ends in {code[at + 13]}", at)
-
-
-def _check_condition(condition: Condition, channels: int, at: int) -> None:
-    known = TEMPERATURE <= condition.source <= BOARD and condition.quantifier <= ALL and condition.compare <= ABOVE
-    if not known:
-        raise BadProgram("a condition this robot does not know", at)
-    if condition.source == TEMPERATURE and not 0 < condition.mask < 1 << channels:
-        raise BadProgram(f"coils {condition.mask:#x}, this robot has {channels}", at)
 
 
 def _condition(condition: Condition) -> bytes:

@@ -44,6 +44,7 @@ class FakeRobot:
         self.duty = [0] * len(LABELS)
         self.period_ms = 0
         self.supply_mv = 2000
+        self.attitude = {"roll_decideg": 0, "pitch_decideg": 0, "down": 255}
         self._until: dict[int, int] = {}
         self._ends_ms: int | None = None
         self._due_ms = 0
@@ -135,7 +136,7 @@ class FakeRobot:
         words = [word for duty in self.duty for word in (duty, 250 + duty)]
         self._post(
             messages.TELEMETRY, now_ms=(self.uptime_ms - late_ms) & 0xFFFFFFFF, state=self.state, step=0,
-            supply_mv=self.supply_mv, current_ma=0, board_decidegc=231,
+            supply_mv=self.supply_mv, current_ma=0, board_decidegc=231, **self.attitude,
             channels=struct.pack(f"<{'Hh' * len(LABELS)}", *words),
         )  # fmt: skip
 
@@ -153,6 +154,7 @@ class FakeRobot:
         self._send(
             messages.STATUS, now_ms, request=seq, state=self.state, code=0, uptime_ms=self.uptime_ms, lease_ms=0,
             step=0, coils=0, supply_mv=self.supply_mv, current_ma=12, board_decidegc=231, dropped=0, overruns=0,
+            **self.attitude,
         )  # fmt: skip
 
     def _stopped(self, now_ms: int) -> None:

@@ -15,6 +15,8 @@ from protocol.program import disassemble
 ROOT = Path(__file__).parents[1]
 HEAD = "gait 1\nrobot round\n"
 
+BALL = ["A00m1", "A10m1", "A100", "A101", "A001", "Am101", "Am100", "Am10m1"]
+CIRCLE = "circle roll = " + " ".join(BALL) + "\n"
 ROUND = {
     "format": 1,
     "robot": "round",
@@ -36,6 +38,18 @@ ROUND = {
 def round_robot(**coil):
     """Return a profile with round numbers: 200 mA and 380 mW at full duty; `coil` changes limits of its coils."""
     return read_profile(json.dumps({**ROUND, "coil": {**ROUND["coil"], **coil}}).encode())
+
+
+def ball_robot(**coil):
+    """Return the same robot with coils that have directions, eight of them in the rolling circle, and a sensor."""
+    return read_profile(json.dumps(ball(**coil)).encode())
+
+
+def ball(**coil):
+    """Return the profile of `ball_robot` as it stands in the firmware."""
+    channels = [{**row, "label": label} for row, label in zip(ROUND["channels"], BALL, strict=True)]
+    limits = {**ROUND["coil"], **coil}
+    return {**ROUND, "channels": channels, "groups": [["low", "A00m1 A10m1"]], "coil": limits, "imu": {"address": 106}}
 
 
 def circular():

@@ -4,7 +4,7 @@ import pytest
 
 from host.gait.compiler import compile_script
 from host.gait.script import load
-from protocol import program
+from protocol import program, verify
 from protocol.program import ABORT, ABOVE, ALL, ANY, BELOW, BOARD, CONTINUE, CURRENT, TEMPERATURE, VOLTAGE, Condition
 from tests.gait_scripts import HEAD, compiled, diagnostics, mistakes, ops, reader, round_robot
 
@@ -197,7 +197,7 @@ def test_the_program_carries_the_robots_mark_and_is_accepted_by_the_robots_own_c
 
     assert header.robot_crc == round_robot().crc
     assert header.length == len(made.code)
-    program.check_code(made.code, 8, 1024)
+    verify.check_code(made.code, 8, 1024)
 
 
 def test_the_same_script_makes_the_same_bytes():

@@ -5,7 +5,8 @@ import pytest
 from host.gait.checker import check
 from host.gait.compiler import compile_script
 from host.gait.script import load
-from protocol.program import check_code, disassemble
+from protocol.program import disassemble
+from protocol.verify import check_code
 from tests.gait_scripts import ROOT, circular
 
 GAITS = sorted((ROOT / "gaits").glob("*.gait"))

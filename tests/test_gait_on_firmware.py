@@ -5,13 +5,14 @@ import json
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from firmware.attitude import Blind
 from firmware.channels import Channels
 from firmware.player import FINISHED, RUNNING, TIMED_OUT, Player
 from firmware.profile import Profile
 from firmware.sense import Sense
 from host.gait.checker import check
 from tests.firmware_bench import Chip, Table
-from tests.gait_scripts import ROUND, compiled, report
+from tests.gait_scripts import CIRCLE, ROUND, ball, ball_robot, compiled, report
 
 STEP_MS = 5
 
@@ -41,12 +42,12 @@ bodies = st.lists(st.recursive(fires | waits, blocks, max_leaves=5), min_size=1,
 class Bare:
     """The firmware's sequencer, channels and estimate on a table top, without link or guard."""
 
-    def __init__(self, code: bytes) -> None:
-        profile, board = Profile(json.dumps(ROUND).encode()), Table()
+    def __init__(self, code: bytes, data=ROUND, attitude=None) -> None:
+        profile, board = Profile(json.dumps(data).encode()), Table()
         outputs = [(Chip(), output) for output in range(8)]
         self.channels = Channels(outputs, profile.coil, profile.supply.at_once_max)
         self.sense = Sense(board, board.supply, 8, profile)
-        self.player = Player(self.channels, self.sense)
+        self.player = Player(self.channels, self.sense, attitude or Blind())
         self.on_ms, self.heat_uj, self.at_once, self.too_long = [0] * 8, [0] * 8, 0, -1
         self.sense.begin_supply()
         self.player.load(code, 0)
@@ -58,6 +59,7 @@ class Bare:
         while outcome == RUNNING:
             self.sense.update(self.now_ms, self.channels.on_mask, self.channels.duty_permille)
             self.sense.read()
+            self.player._attitude.look(self.now_ms)
             outcome = self.player.run(self.now_ms)
             self.too_long = max(self.too_long, self.channels.update(self.now_ms, self.sense.temperature_millidegc))
             self._measure()
@@ -100,6 +102,66 @@ def test_what_the_checker_passes_is_never_refused_and_never_beyond_its_worst_cas
 
     assert bare.too_long == -1
     assert bare.now_ms - STEP_MS <= worst.longest_ms
+    assert bare.at_once <= worst.at_once
+    for channel, coil in enumerate(worst.coils):
+        assert bare.on_ms[channel] <= coil.on_ms
+        assert bare.heat_uj[channel] <= coil.heat_peak_mj * 1000
+
+
+class Tumbling:
+    """An attitude that is another at random moments."""
+
+    known = True
+
+    def __init__(self, random) -> None:
+        self._random = random
+        self._down = 0
+
+    def look(self, now_ms: int) -> None:
+        if self._random.random() < 0.02:
+            self._down = self._random.randrange(8)
+
+    def nearness(self, channel: int) -> int:
+        return 100 - min((channel - self._down) % 8, (self._down - channel) % 8)
+
+    def down_channel(self) -> int:
+        return self._down
+
+
+lets = st.builds("let {} = roll[down + {}]".format, st.sampled_from("xy"), st.integers(0, 2))
+chosen = st.builds(
+    "fire ${} at {} % for {} ms{}".format,
+    st.sampled_from("xy"),
+    st.integers(1, 90),
+    st.integers(20, 2000),
+    st.sampled_from(["", " overlap 20 ms"]),
+)
+stills = st.one_of(
+    st.sampled_from([10, 20, 1000]).map("wait {} ms".format),
+    st.builds("wait until ${}.heat < {} mJ timeout 9 s else abort".format, st.sampled_from("xy"), st.integers(50, 400)),
+    st.builds("wait until down is ${} timeout 200 ms else continue".format, st.sampled_from("xy")),
+    st.builds("fire A00m1 at {} % for {} ms".format, st.integers(1, 90), st.integers(20, 2000)),
+)
+turns = st.lists(lets | chosen | stills, min_size=2, max_size=7).map("\n    ".join)
+tumbles = st.builds(
+    "{}\nrepeat {}:\n    {}\n    wait 10 ms".format,
+    turns.map(lambda text: text.replace("    ", "")),
+    st.integers(1, 5),
+    turns,
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(tumbles, st.randoms(use_true_random=False))
+def test_whatever_coils_the_robot_chooses_none_goes_beyond_the_worst_case(body, random):
+    text = CIRCLE + "let x = roll[down]\nlet y = roll[down + 1]\n" + body
+    worst = report(text, profile=ball_robot())
+    assume(worst.sound)
+    bare = Bare(compiled(text, profile=ball_robot()).code, ball(), Tumbling(random))
+
+    assert bare.run() in (FINISHED, TIMED_OUT)
+
+    assert bare.too_long == -1
     assert bare.at_once <= worst.at_once
     for channel, coil in enumerate(worst.coils):
         assert bare.on_ms[channel] <= coil.on_ms

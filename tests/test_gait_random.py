@@ -9,7 +9,8 @@ from host.gait.diagnostics import GaitError
 from host.gait.parser import parse_file
 from host.gait.script import loads
 from host.gait.syntax import KEYWORDS
-from protocol.program import HEADER_BYTES, check_code, read_header
+from protocol.program import HEADER_BYTES, read_header
+from protocol.verify import check_code
 from tests.gait_scripts import HEAD, round_robot
 
 LIMITS = settings(max_examples=150, deadline=None)

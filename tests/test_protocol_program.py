@@ -4,10 +4,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from protocol import program
+from protocol import program, verify
 from protocol.program import Condition
 
 CONDITION = Condition(program.TEMPERATURE, program.ALL, program.BELOW, 450, 0b11)
+AIM = program.aim(0, 1, [0, 1, 2])
 OPS = [
     (program.fire(0x01, 600, 700, 950), "01 01000000 5802 bc02 b603"),
     (program.ramp(0x03, 300, 800, 0, 100), "02 03000000 2c01 2003 0000 6400"),
@@ -18,6 +19,8 @@ OPS = [
     (program.guard(Condition(program.CURRENT, 0, program.ABOVE, -2, 0)), "07 02 10 feff 00000000"),
     (program.step(12), "08 0c00"),
     (program.off(0x80), "09 80000000"),
+    (program.aim(2, 1, [11, 12, 0]), "0a 02 01 0b0c00ffffffffff"),
+    (program.aimed(2, 1000, 550, 950), "0b 02 e803 2602 b603 0000"),
     (program.halt(), "00"),
 ]
 
@@ -41,6 +44,34 @@ def test_a_condition_reads_back_with_its_sign():
     assert program.read_condition(wait, 1).value == -400
 
 
+def test_a_condition_on_down_is_frozen():
+    assert program.guard(Condition(program.DOWN, program.CHOSEN, program.IS, 0, 2)) == bytes.fromhex(
+        "07 08 12 0000 02000000"
+    )
+
+
+def test_places_behind_are_counted_round_the_circle():
+    assert program.aim(0, -1, [4, 5, 6]) == program.aim(0, 2, [4, 5, 6])
+
+
+@pytest.mark.parametrize(
+    ("code", "needed"),
+    [
+        (program.guard(CONDITION), False),
+        (program.guard(Condition(program.PITCH, 0, program.ABOVE, -450, 0)), True),
+        (program.guard(Condition(program.DOWN, 0, program.IS, 0, 1)), True),
+        (AIM, True),
+    ],
+)
+def test_the_verification_finds_out_whether_a_program_asks_where_down_is(code, needed):
+    check = verify.Check(code + program.halt(), 8, 100)
+
+    while not check.go_on(1):
+        pass
+
+    assert check.needs_attitude == needed
+
+
 BAD = {
     "nothing": (b"", "0 bytes of code"),
     "no halt": (program.delay(1), "needs a halt"),
@@ -54,7 +85,17 @@ BAD = {
     "unknown coil": (program.fire(1 << 8, 1, 1) + program.halt(), "coils 0x100"),
     "duty above all": (program.fire(1, 1001, 1) + program.halt(), "duty 1001"),
     "nine guards": (program.guard(CONDITION) * 9 + program.halt(), "at most 8 guards"),
-    "unknown source": (program.guard(Condition(5, 0, 0, 0, 1)) + program.halt(), "does not know"),
+    "unknown source": (program.guard(Condition(9, 0, 0, 0, 1)) + program.halt(), "does not know"),
+    "unknown quantifier": (program.guard(Condition(1, 3, 0, 0, 1)) + program.halt(), "does not know"),
+    "chosen current": (AIM + program.guard(Condition(2, 2, 0, 0, 0)) + program.halt(), "does not know"),
+    "a coil used before it is aimed": (program.aimed(0, 1, 1) + AIM + program.halt(), "holds no coil"),
+    "a condition on a coil not aimed": (AIM + program.guard(Condition(8, 2, 1, 0, 1)) + program.halt(), "no coil"),
+    "a fifth place": (program.aim(4, 0, [0, 1]) + program.halt(), "cannot be aimed"),
+    "a circle of one": (program.aim(0, 0, [1]) + program.halt(), "cannot be aimed"),
+    "a circle with a hole": (AIM[:5] + b"\xff\x02" + AIM[7:] + program.halt(), "cannot be aimed"),
+    "a circle beyond the robot": (program.aim(0, 0, [0, 8]) + program.halt(), "cannot be aimed"),
+    "further than once around": (AIM[:2] + b"\x03" + AIM[3:] + program.halt(), "cannot be aimed"),
+    "an aimed duty above all": (AIM + program.aimed(0, 1001, 1) + program.halt(), "duty 1001"),
     "unknown end of wait": (program.wait(CONDITION, 1, 2) + program.halt(), "ends in 2"),
     "too long": (program.delay(1) * 30 + program.halt(), "at most 100"),
 }
@@ -65,13 +106,13 @@ def test_a_bad_code_is_refused_and_says_why(name):
     code, why = BAD[name]
 
     with pytest.raises(program.BadProgram, match=why):
-        program.check_code(code, channels=8, bytes_max=100)
+        verify.check_code(code, channels=8, bytes_max=100)
 
 
 @given(st.binary(max_size=100))
 def test_random_bytes_are_refused_or_can_be_taken_apart(code):
     try:
-        program.check_code(code, channels=8, bytes_max=100)
+        verify.check_code(code, channels=8, bytes_max=100)
     except program.BadProgram:
         return
     assert program.disassemble(code)[-1][1] == "halt"

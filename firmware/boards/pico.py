@@ -1,8 +1,8 @@
 """The Pico-class board: which pin is which, and the chips on its bus.
 
-Two PCA9685 drive the coils' low-side MOSFETs, an INA226 watches the common supply, a thermistor the board. The
-outputs are enabled only while the heartbeat pin keeps moving (a retriggerable monostable of 50 ms) and the
-emergency-stop loop is closed: a hung processor cannot hold a coil on.
+Two PCA9685 drive the coils' low-side MOSFETs, an INA226 watches the common supply, a thermistor the board; some robots
+carry an LSM6DS3TR-C besides, for their attitude. The outputs are enabled only while the heartbeat pin keeps moving (a
+retriggerable monostable of 50 ms) and the emergency-stop loop is closed: a hung processor cannot hold a coil on.
 """
 
 import time
@@ -10,6 +10,7 @@ import time
 from machine import ADC, I2C, UART, WDT, Pin, unique_id
 
 from firmware.drivers.ina226 import Ina226
+from firmware.drivers.lsm6ds3tr import Lsm6ds3tr
 from firmware.drivers.ntc import decidegc
 from firmware.drivers.pca9685 import Pca9685
 
@@ -39,6 +40,10 @@ class Board:
     def monitor(self, shunt_mohm: int) -> Ina226:
         """Return the driver of the monitor of the coil supply."""
         return Ina226(self._bus, 0x40, shunt_mohm)
+
+    def imu(self, address: int) -> Lsm6ds3tr:
+        """Return the driver of the attitude sensor at that address."""
+        return Lsm6ds3tr(self._bus, address)
 
     def power(self, on: bool) -> None:
         """Switch the coil supply."""

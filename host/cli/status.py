@@ -36,6 +36,8 @@ def _lines(status: Status, line: dict[str, int | None]) -> Iterator[str]:
     if row:
         yield f"  last fault  {row.name} {row.cause} {row.todo}"
     yield f"  supply      {status.supply_mv / 1000:.2f} V, {status.current_ma} mA; board {status.board_degc:.1f} C"
+    if status.down is not None:
+        yield f"  attitude    {status.down} down, pitch {status.pitch_deg:.1f} deg, roll {status.roll_deg:.1f} deg"
     yield f"  lease       {f'{status.lease_ms} ms left' if status.lease_ms else 'free'}"
     yield f"  up          {status.uptime_ms / 1000:.1f} s, {status.overruns} late control steps"
     trip = "-" if line["round_trip_ms"] is None else line["round_trip_ms"]

@@ -49,6 +49,22 @@ class Builder(Transformer[Token, Any]):
         """Return an `include` with its path."""
         return tree.Include(str(items[1])[1:-1], self._place(items[0], items[1]))
 
+    def circle(self, items: Items) -> tree.Circle:
+        """Return a circle with its coils as written."""
+        word, name, *coils = items
+        return tree.Circle(self._name(name), tuple(self._coil(item) for item in coils), self._place(word, coils[-1]))
+
+    def let(self, items: Items) -> tree.Let:
+        """Return a choice of a coil."""
+        word, name, circle, way, ahead = items
+        place = self._place(word, way) if ahead is None else self._place(word).upto(ahead.place)
+        return tree.Let(self._name(name), self._name(circle), self._name(way), ahead, place)
+
+    def ahead(self, items: Items) -> Expression:
+        """Return by how many places to go on; to go back counts below zero."""
+        sign, value = items
+        return value if sign == "+" else tree.Negative(value, self._place(sign).upto(value.place))
+
     def define(self, items: Items) -> tree.Define:
         """Return a def with its argument names and body."""
         word, name, *parameters, body = items
@@ -110,6 +126,16 @@ class Builder(Transformer[Token, Any]):
             value,
             self._place(first).upto(value.place),
         )
+
+    def angle(self, items: Items) -> tree.Angle:
+        """Return a condition on how the robot lies."""
+        quantity, compare, value = items
+        return tree.Angle(self._name(quantity), str(compare), value, self._place(quantity).upto(value.place))
+
+    def facing(self, items: Items) -> tree.Facing:
+        """Return a condition on which coil points down."""
+        way, _, coil = items
+        return tree.Facing(self._name(way), self._coil(coil), self._place(way, coil))
 
     def call(self, items: Items) -> tree.Call:
         """Return a call with its arguments."""

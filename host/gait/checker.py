@@ -12,11 +12,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from math import ceil
 
+from host.gait.coiltrial import STEP_MS
 from host.gait.compiler import Compiled
 from host.gait.diagnostics import Diagnostic, Problems, exit_code, in_order
 from host.gait.plan import Delay, Fire, Guard, Loop, Op, Wait
-from host.gait.tree import Clause, Place
-from host.gait.trial import STEP_MS, TooLong, Trial
+from host.gait.tree import Clause, Condition, Place
+from host.gait.trial import TooLong, Trial
 from host.profile import Profile
 from protocol import program
 
@@ -162,6 +163,7 @@ def _check_op(op: Op, depth: int, profile: Profile, problems: Problems) -> None:
     if isinstance(op, Loop) and depth > program.DEPTH_MAX:
         problems.add(op.node.place, "E308", f"repeats are nested {depth} deep, at most {program.DEPTH_MAX}")
     if isinstance(op, Guard) and op.condition.source == program.TEMPERATURE:
+        assert isinstance(op.node.condition, Condition)
         _check_trip(op.condition.value, op.node.condition.value.place, profile, problems)
     if not isinstance(op, Fire):
         return

@@ -1,4 +1,4 @@
-"""The head of a script and what its files declare: robot, params with their overrides, defs."""
+"""The head of a script and what its files declare: robot, params with their overrides, circles, defs."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import TypeVar
 
 from host.gait import tree, units
+from host.gait.aims import declare_circle
 from host.gait.diagnostics import Diagnostic, GaitError, Problems, did_you_mean
 from host.gait.parser import parse_value
 from host.gait.scope import Scope, Value
@@ -16,7 +17,7 @@ from host.profile import Profile
 
 T = TypeVar("T", bound=tree.Statement)
 VERSION = 1
-DECLARATIONS = (tree.Gait, tree.Robot, tree.Param, tree.Include, tree.Define, tree.Broken)
+DECLARATIONS = (tree.Gait, tree.Robot, tree.Param, tree.Include, tree.Circle, tree.Define, tree.Broken)
 
 
 def check_head(script: Script, profile: Profile, problems: Problems) -> None:
@@ -27,7 +28,7 @@ def check_head(script: Script, profile: Profile, problems: Problems) -> None:
         _check_robot(file, profile, problems)
         for item in file.statements if file is not script.main else ():
             if not isinstance(item, DECLARATIONS):
-                help = "only params and defs can be included: put it into a def"
+                help = "only params, circles and defs can be included: put it into a def"
                 problems.add(item.place, "E112", "an included file does nothing by itself", help)
     if script.robot is None and "robot" not in unread:
         problems.add(Place(script.main.name, 1, 1, 2), "E110", "the script names no robot", "add `robot NAME`")
@@ -48,6 +49,12 @@ def declare_params(script: Script, scope: Scope, overrides: Sequence[str]) -> No
             place = Place(f"-p {name}", 1, 1, 2)
             help = did_you_mean(name, scope.params) or f"params are: {' '.join(scope.params) or 'none'}"
             scope.problems.add(place, "E181", f"the script has no param `{name}`", help)
+
+
+def declare_circles(script: Script, scope: Scope) -> None:
+    """Add every `circle` of the text."""
+    for node in _all(script, tree.Circle):
+        declare_circle(node, scope)
 
 
 def declare_defs(script: Script, scope: Scope) -> dict[str, tree.Define]:

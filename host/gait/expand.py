@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from host.gait import orders, tree, units
-from host.gait.declare import check_head, declare_defs, declare_params
+from host.gait import aims, orders, tree, units
+from host.gait.declare import check_head, declare_circles, declare_defs, declare_params
 from host.gait.diagnostics import Problems, did_you_mean
 from host.gait.lines import code_part
 from host.gait.plan import Loop, Op, Step, Wait
@@ -48,6 +48,7 @@ def expand(script: Script, profile: Profile, overrides: Sequence[str], problems:
     scope = Scope(problems, profile, unread=frozenset(script.unread_words()))
     check_head(script, profile, problems)
     declare_params(script, scope, overrides)
+    declare_circles(script, scope)
     worker = _Expander(script, problems, declare_defs(script, scope))
     plan: list[Op] = []
     try:
@@ -81,9 +82,12 @@ class _Expander:
                 return orders.fire(node, where.scope, self._step(node.place, where))
             case tree.Wait():
                 return orders.wait(node, where.scope, self._step(node.place, where))
-            case tree.WaitUntil() if where.together:
-                self.problems.add(node.place, "E143", "a wait for a condition cannot stand in a together")
+            case tree.WaitUntil() | tree.Let() if where.together:
+                word = "a let" if isinstance(node, tree.Let) else "a wait for a condition"
+                self.problems.add(node.place, "E143", f"{word} cannot stand in a together")
                 return []
+            case tree.Let():
+                return aims.let(node, where.scope, self._step(node.place, where))
             case tree.WaitUntil():
                 return orders.wait_until(node, where.scope, self._step(node.place, where))
             case tree.Repeat():
@@ -104,10 +108,11 @@ class _Expander:
     def try_uncalled(self, scope: Scope) -> None:
         """Look for mistakes in the defs that nobody calls; what their arguments will be is not known."""
         steps = list(self.steps)
+        aside = replace(scope, chosen=dict(scope.chosen), reach=dict(scope.reach))
         for name in [name for name in self.defs if name not in self.called]:
             define = self.defs[name]
             arguments = dict.fromkeys((parameter.text for parameter in define.parameters), None)
-            self.block(define.body, Where(scope.inner(arguments), defs=(name,), top=False))
+            self.block(define.body, Where(aside.inner(arguments), defs=(name,), top=False))
         self.steps = steps
 
     def _repeat(self, node: tree.Repeat, where: Where) -> list[Op]:

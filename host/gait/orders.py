@@ -25,7 +25,8 @@ def fire(node: tree.Fire, scope: Scope, step: int) -> list[Op]:
     _once(node.clauses, scope)
     if not node.coils:
         scope.problems.add(node.place, "E130", "which coils?", "name them after `fire`")
-    mask = scope.coils(node.coils)
+    kept = scope.aimed(node.coils[0]) if len(node.coils) == 1 else None
+    mask = scope.coils(node.coils) if kept is None else scope.reach.get(kept)
     duty = _clause(node, "at", scope, units.SHARE, 1, 1000)
     time_ms = _clause(node, "for", scope, units.TIME, 1, FIRE_MAX_MS)
     cutoff = _clause(node, "until", scope, units.TEMPERATURE, 1, CUTOFF_MAX_DECIDEGC)
@@ -36,7 +37,7 @@ def fire(node: tree.Fire, scope: Scope, step: int) -> list[Op]:
             scope.problems.add(node.place, code, f"fire has no {what}", f"add `{form}`")
     if not mask or duty is None or time_ms is None or not _fits(node, time_ms, overlap_ms, ramp_ms, scope):
         return []
-    order = Fire(mask, duty, time_ms, cutoff or 0, ramp_ms, step, node)
+    order = Fire(mask, duty, time_ms, cutoff or 0, ramp_ms, step, node, kept)
     return [order, Delay(time_ms - overlap_ms, step)] if overlap_ms < time_ms else [order]
 
 

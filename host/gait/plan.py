@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from host.gait import tree
@@ -26,7 +26,7 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Fire:
-    """Heat the coils of `mask`; does not wait."""
+    """Heat the coils of `mask`, or the one of them that the robot chose and keeps in place `kept`; does not wait."""
 
     mask: int
     duty_permille: int
@@ -35,6 +35,18 @@ class Fire:
     ramp_ms: int
     step: int
     node: tree.Fire
+    kept: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Aim:
+    """Choose the coil `ahead` places after the one nearest to down in `circle`, a list of channels, and keep it."""
+
+    kept: int
+    ahead: int
+    circle: tuple[int, ...]
+    step: int
+    node: tree.Let
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +85,15 @@ class Loop:
     node: tree.Repeat
 
 
-Op = Fire | Delay | Wait | Guard | Loop
+Op = Fire | Aim | Delay | Wait | Guard | Loop
+
+
+def walk(plan: Iterable[Op]) -> Iterator[Op]:
+    """Yield every op of a plan once, those within loops after the loop."""
+    for op in plan:
+        yield op
+        if isinstance(op, Loop):
+            yield from walk(op.body)
 
 
 def encode(plan: Iterable[Op]) -> bytes:
@@ -95,13 +115,17 @@ def _block(plan: Iterable[Op]) -> bytes:
     return b"".join(parts)
 
 
-def _op(op: Fire | Delay | Wait | Guard) -> bytes:
+def _op(op: Fire | Aim | Delay | Wait | Guard) -> bytes:  # noqa: PLR0911  # one for each op
     if isinstance(op, Delay):
         return bytes(program.delay(op.time_ms))
     if isinstance(op, Wait):
         return bytes(program.wait(op.condition, op.timeout_ms, op.otherwise))
     if isinstance(op, Guard):
         return bytes(program.guard(op.condition))
+    if isinstance(op, Aim):
+        return bytes(program.aim(op.kept, op.ahead, list(op.circle)))
+    if op.kept is not None:
+        return bytes(program.aimed(op.kept, op.duty_permille, op.time_ms, op.cutoff_decidegc, op.ramp_ms))
     if op.ramp_ms:
         return bytes(program.ramp(op.mask, op.duty_permille, op.time_ms, op.cutoff_decidegc, op.ramp_ms))
     return bytes(program.fire(op.mask, op.duty_permille, op.time_ms, op.cutoff_decidegc))

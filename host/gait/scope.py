@@ -6,7 +6,7 @@ A value that cannot be worked out is reported once and is None from then on, so 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
 from host.gait import tree, units
@@ -25,7 +25,14 @@ class CoilSet:
     mask: int
 
 
-Value = Quantity | CoilSet | None  # None: wrong, and reported already
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """A coil that the robot chooses and keeps in its place number `kept`."""
+
+    kept: int
+
+
+Value = Quantity | CoilSet | Chosen | None  # None: wrong, and reported already
 
 
 @dataclass
@@ -37,10 +44,13 @@ class Scope:
     params: dict[str, Value] = field(default_factory=dict)
     arguments: Mapping[str, Value] = field(default_factory=dict)
     unread: frozenset[str] = frozenset()
+    circles: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    chosen: dict[str, Chosen] = field(default_factory=dict)
+    reach: dict[int, int] = field(default_factory=dict)  # mask of the coils that a place may hold
 
     def inner(self, arguments: Mapping[str, Value]) -> Scope:
         """Return the scope of a def that is called with these arguments."""
-        return Scope(self.problems, self.profile, self.params, arguments, self.unread)
+        return replace(self, arguments=arguments)
 
     def value(self, node: Expression) -> Quantity | None:
         """Return what an expression comes to."""
@@ -101,6 +111,10 @@ class Scope:
             if isinstance(value, Quantity):
                 self.problems.add(node.place, "E165", f"`${node.name}` is {value}, not a coil")
                 return None
+            if isinstance(value, Chosen):
+                help = "fire it by itself"
+                self.problems.add(node.place, "E138", f"`${node.name}` is chosen by the robot as it runs", help)
+                return None
             return None if value is None else value.mask
         known = self.groups()
         if node.text not in known:
@@ -109,6 +123,22 @@ class Scope:
             self.problems.add(node.place, "E131", message, help)
             return None
         return known[node.text]
+
+    def aimed(self, node: tree.Coil) -> int | None:
+        """Return the place of a coil that the robot chooses, or None when this is another coil."""
+        value = self.known.get(node.name) if isinstance(node, Reference) else None
+        return value.kept if isinstance(value, Chosen) else None
+
+    @property
+    def known(self) -> dict[str, Value]:
+        """Return every name that stands for something, with what it stands for."""
+        return {**self.chosen, **self.params, **self.arguments}
+
+    def sees(self, place: Place) -> None:
+        """Report a statement that asks where down is, on a robot that does not know."""
+        if self.profile.imu is None:
+            message = f"the robot {self.profile.robot} has no attitude sensor"
+            self.problems.add(place, "E313", message)
 
     def groups(self) -> dict[str, int]:
         """Return the mask of every coil and group by its name."""
@@ -121,11 +151,10 @@ class Scope:
 
     def lookup(self, node: Reference) -> Value:
         """Return what `$name` stands for."""
-        for names in (self.arguments, self.params):
-            if node.name in names:
-                return names[node.name]
+        known = self.known
+        if node.name in known:
+            return known[node.name]
         if node.name not in self.unread:
-            known = [*self.arguments, *self.params]
             self.problems.add(node.place, "E160", f"`${node.name}` is not declared", did_you_mean(node.name, known))
         return None
 
@@ -151,7 +180,7 @@ class Scope:
 
     def _quantity(self, node: Reference) -> Quantity | None:
         value = self.lookup(node)
-        if isinstance(value, CoilSet):
+        if isinstance(value, CoilSet | Chosen):
             self.problems.add(node.place, "E165", f"`${node.name}` is a coil, not a value")
             return None
         return value

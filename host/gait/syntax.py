@@ -15,6 +15,8 @@ FORMS = {
     "robot": "robot NAME",
     "param": "param NAME = 60 % [5 % .. 90 %]",
     "include": 'include "file"',
+    "circle": "circle NAME = COILS",
+    "let": "let NAME = CIRCLE[down + 1]",
     "def": "def NAME(ARGUMENTS):",
     "fire": "fire COILS at 60 % for 600 ms [until 95 C] [overlap 200 ms] [ramp 100 ms]",
     "repeat": "repeat 3:",
@@ -23,7 +25,7 @@ FORMS = {
     "guard": "guard any.temperature > 110 C",
 }
 BLOCKS = ("def", "repeat", "together")
-CLAUSES = ("at", "for", "until", "overlap", "ramp", "timeout", "else")
+CLAUSES = ("at", "for", "until", "overlap", "ramp", "timeout", "else", "is")
 KEYWORDS = (*FORMS, *CLAUSES)
 NAMED = {"NUMBER": "a number", "NAME": "a name", "TEXT": "a text in quotation marks"}
 SIGNS = {
@@ -129,7 +131,7 @@ class _Reader:
         return None
 
     def _keyword(self) -> Diagnostic | None:
-        if self.text in KEYWORDS and "NAME" in self.accepts and self.first in ("param", "def"):
+        if self.text in KEYWORDS and "NAME" in self.accepts and self.first in ("param", "def", "circle", "let"):
             return self._here("E161", f"`{self.text}` is a word of the language", "choose another name")
         return None
 

@@ -109,6 +109,28 @@ class Condition:
 
 
 @dataclass(frozen=True, slots=True)
+class Angle:
+    """`roll > 30 deg`: how the robot lies, evaluated on the robot."""
+
+    quantity: Name
+    compare: str
+    value: Expression
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Facing:
+    """`down is A10m1`: which coil points down, evaluated on the robot."""
+
+    way: Name
+    coil: Coil
+    place: Place
+
+
+AnyCondition = Condition | Angle | Facing
+
+
+@dataclass(frozen=True, slots=True)
 class Gait:
     """`gait 1`: the version of the language."""
 
@@ -140,6 +162,26 @@ class Include:
     """`include "file"`: params and defs of another file, named relative to this one."""
 
     path: str
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """Coils that point down one after another while the robot rolls, in that order."""
+
+    name: Name
+    coils: tuple[Coil, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Let:
+    """`let next = roll[down + 1]`: the robot chooses a coil of a circle and keeps it under a name."""
+
+    name: Name
+    circle: Name
+    way: Name
+    ahead: Expression | None
     place: Place
 
 
@@ -195,7 +237,7 @@ class Wait:
 class WaitUntil:
     """Wait for a condition, for a bounded time."""
 
-    condition: Condition
+    condition: AnyCondition
     clauses: tuple[Clause | Otherwise, ...]
     place: Place
 
@@ -204,7 +246,7 @@ class WaitUntil:
 class Guard:
     """A condition under which the robot switches everything off."""
 
-    condition: Condition
+    condition: AnyCondition
     place: Place
 
 
@@ -226,7 +268,21 @@ class Broken:
 
 
 Statement = (
-    Gait | Robot | Param | Include | Define | Fire | Repeat | Together | Wait | WaitUntil | Guard | Call | Broken
+    Gait
+    | Robot
+    | Param
+    | Include
+    | Circle
+    | Define
+    | Let
+    | Fire
+    | Repeat
+    | Together
+    | Wait
+    | WaitUntil
+    | Guard
+    | Call
+    | Broken
 )
 
 

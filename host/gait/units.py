@@ -1,7 +1,7 @@
 """Quantities of the gait language: exact numbers with a kind, and the units they are written in.
 
-Base units are the robot's own integers: ms, permille, 0.1 C, mA, mV. Arithmetic is exact (fractions) and is rounded
-once, when a value becomes an order.
+Base units are the robot's own integers: ms, permille, 0.1 C, mA, mV, mJ, 0.1 deg. Arithmetic is exact (fractions) and
+is rounded once, when a value becomes an order.
 """
 
 from __future__ import annotations
@@ -26,6 +26,8 @@ SHARE = "share"
 TEMPERATURE = "temperature"
 CURRENT = "current"
 VOLTAGE = "voltage"
+ENERGY = "energy"
+ANGLE = "angle"
 
 UNITS = {
     "ms": Unit(TIME, 1),
@@ -34,6 +36,8 @@ UNITS = {
     "C": Unit(TEMPERATURE, 10),
     "mA": Unit(CURRENT, 1),
     "mV": Unit(VOLTAGE, 1),
+    "mJ": Unit(ENERGY, 1),
+    "deg": Unit(ANGLE, 10),
 }
 OF_KIND = {
     kind: [name for name, unit in UNITS.items() if unit.kind == kind] for kind in {u.kind for u in UNITS.values()}
@@ -41,8 +45,9 @@ OF_KIND = {
 # What people write for a unit when they do not know ours.
 ALIASES = {
     "percent": "%", "pct": "%", "permille": "%", "sec": "s", "secs": "s", "second": "s", "seconds": "s",
-    "msec": "ms", "millis": "ms", "milliseconds": "ms", "min": "s", "us": "ms", "degC": "C", "deg": "C", "c": "C",
+    "msec": "ms", "millis": "ms", "milliseconds": "ms", "min": "s", "us": "ms", "degC": "C", "c": "C",
     "celsius": "C", "K": "C", "F": "C", "A": "mA", "ma": "mA", "V": "mV", "mv": "mV", "S": "s", "MS": "ms", "Ms": "ms",
+    "degree": "deg", "degrees": "deg", "rad": "deg", "J": "mJ", "mj": "mJ",
 }  # fmt: skip
 
 

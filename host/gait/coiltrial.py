@@ -1,0 +1,59 @@
+"""One coil in the worst case of a plan: its order, its heat, its rest, in the firmware's arithmetic rounded up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import ceil
+
+from host.gait.plan import Fire
+from host.profile import CoilLimits
+
+STEP_MS = 5  # control step of the firmware
+
+
+@dataclass(slots=True)
+class CoilTrial:
+    """One coil during the trial, and what it came to."""
+
+    on_ms: int = 0
+    energy_uj: int = 0
+    orders: int = 0
+    heat_peak_uj: int = 0
+    heat_uj: int = 0
+    heat_at_ms: int = 0
+    since_ms: int = 0
+    begin_ms: int = 0
+    end_ms: int = -(10**9)  # as the script says
+    off_ms: int = 0  # when the control step notices it, at the latest
+    power_uw: int = 0
+    duty_permille: int = 0
+    waits: int = 0
+    order: Fire | None = None
+    reach: int = 0  # mask of the coils that this one stands for
+    others_uj: int = 0  # of a chosen coil: the most that one chosen before still holds
+    others_at_ms: int = 0
+
+    def rested_ms(self, limits: CoilLimits) -> int:
+        """Return until when the coil must rest after its last time on."""
+        if self.end_ms - self.since_ms + STEP_MS > limits.on_max_ms:
+            return self.end_ms + limits.rest_ms + STEP_MS
+        return self.end_ms
+
+    def settle_others(self, now_ms: int, limits: CoilLimits) -> None:
+        """Bring the heat of what a name has stood for before up to now."""
+        if self.others_uj:
+            self.others_uj = min(self.others_uj, heat_uj(self.others_uj, 0, now_ms - self.others_at_ms, limits))
+        self.others_at_ms = now_ms
+
+
+def heat_uj(heat_uj: int, power_uw: int, time_ms: int, limits: CoilLimits) -> int:
+    """Return the heat after `time_ms`: the firmware's steps in closed form, with all they may round up."""
+    leak_ms = limits.heat_leak_ms
+    kept: float = (1 - STEP_MS / leak_ms) ** (time_ms / STEP_MS)
+    goal_uj = power_uw * leak_ms / 1000 + leak_ms / STEP_MS
+    return ceil(goal_uj + (heat_uj - goal_uj) * kept)
+
+
+def energy_uj(power_uw: int, time_ms: int) -> int:
+    """Return the energy of that power, rounded up."""
+    return -(-power_uw * time_ms // 1000)
