@@ -1,0 +1,262 @@
+"""A sphere robot as a plant: electrical power of the coils in, shape, attitude and temperatures out.
+
+Axes: x along the plane in the direction of travel, up its slope, y to the left, z away from it; the origin lies below
+the place where the core was before the body came to rest. A sloped plane lies level until a coil is heated for the
+first time, and is tilted a moment later, as for the ring. `rotation_deg` is positive for rolling forward.
+
+    plant = SpherePlant(load("sphere-b"))
+    plant.advance(5000, power_w)
+    plant.observe()["travel_mm"], plant.attitude()
+"""
+
+from math import degrees, inf
+from typing import Any
+
+import numpy as np
+
+from hil_sim.directions import direction
+from hil_sim.physics import coil
+from hil_sim.physics.bodies import Attitude
+from hil_sim.physics.body import World, gravity, packed
+from hil_sim.physics.coilset import coils_of, cold
+from hil_sim.physics.compiled import Array, bound, prepare
+from hil_sim.physics.net import body, flight
+from hil_sim.physics.net.gauge import centre, kinetic
+from hil_sim.physics.net.mesh import SPHERE, net_of, unit
+from hil_sim.physics.net.motion import begin
+from hil_sim.physics.net.pulls import ARM, LENGTH, LENGTH_BEFORE, PULL, freeze, measure
+from hil_sim.physics.net.rotation import matrix, quaternion
+from hil_sim.physics.net.state import (
+    APEX,
+    BEND_LOSS,
+    CLEARANCE,
+    COIL_WORK,
+    CONTACTS,
+    DRAG_LOSS,
+    ELASTIC,
+    GROUND_WORK,
+    ITERATIONS,
+    PEAK_FORCE,
+    PEAK_T,
+    REJECTED,
+    STEP,
+    STEPS,
+    TILT_WORK,
+    TIME,
+    TURN,
+    motion_of,
+)
+from hil_sim.physics.state import method_of
+from hil_sim.physics.terrain import terrain_of
+from hil_sim.robotfile import RobotFile
+
+SETTLING_DRAG = 20.0  # [1/s] ASSUMED: numerical, the body is at rest within its settle_s
+TOLERANCE = 1e-4  # of the radius, in a step
+
+
+class SpherePlant:
+    """Coils, hoops, core and ground of one robot, at rest at time 0; a function of the powers given to it."""
+
+    def __init__(self, robot: RobotFile, seed: int = 0, rho: float = 0.5, tolerance: float = TOLERANCE) -> None:
+        assert robot.sphere is not None
+        assert isinstance(robot.start, Attitude)
+        prepare(body.advance)
+        ground, count, numbers = robot.ground, len(robot.labels), robot.sphere
+        self.labels = list(robot.labels)
+        spokes = [direction(label) for label in self.labels[: count - len(robot.jumps)]]
+        chords = [(direction(a), direction(b)) for a, b in robot.jumps]
+        self._compass = dict(zip(self.labels, (unit(each) for each in spokes), strict=False))
+        self._net = net_of(numbers, ground, SPHERE, spokes, chords)
+        self._terrain = terrain_of(ground, seed, 2.0 * numbers.R)
+        self._world = World(ground.gravity, ground.slope, inf, abs(ground.slope) / ground.tilt_rate)
+        self._tilt_after, self._taken_hold = ground.tilt_after, False
+        self._method = method_of(rho, tolerance * numbers.R)
+        self._motion = motion_of(self._net, *self._placed(numbers.R, robot.start))
+        self._flight = flight.no_flight()
+        coils = coils_of(robot.coil, count, ground.T_amb)
+        self._coils = packed(coils)
+        for s in range(count):
+            measure(self._net, self._motion.now.x, self._motion.now.R, self._motion.coils, s)
+        self._state = cold(coils, self._motion.coils[LENGTH])
+        coil.measure(self._state, self._motion.coils[LENGTH], coils)
+        self._motion.coils[LENGTH_BEFORE] = self._motion.coils[LENGTH]
+        self._settle(robot.start.settle)
+        self._power = np.zeros(count)
+        self._parts = (
+            self._net, self._terrain, self._coils, self._state, self._world, self._method, self._motion, self._flight,
+        )  # fmt: skip
+        self._advance = bound(body.advance, *self._parts, self._power, 0.0)
+        self._start = self._centre()
+        self._stored_at_start = sum(self._stored().values())
+        self.observe()  # no machine code is left to be loaded later
+
+    @property
+    def temperature(self) -> Array:
+        """Temperatures of the coils [degC]."""
+        return self._state.T
+
+    @property
+    def resistance(self) -> Array:
+        """Resistances of the coils [ohm]."""
+        return self._state.R
+
+    @property
+    def force(self) -> Array:
+        """Pulls of the coils [N]."""
+        pulls: Array = self._motion.coils[PULL]
+        return pulls
+
+    def advance(self, duration_us: int, coil_power_w: Array) -> None:
+        """Let time pass with the mean electrical power of each coil."""
+        self._power[:] = coil_power_w
+        if not self._taken_hold and self._power.any():
+            self._take_hold()
+        self._advance(*self._parts, self._power, duration_us * 1e-6)
+
+    def attitude(self) -> tuple[float, float, float, float]:
+        """Return the unit quaternion (w, x, y, z) that turns the round body's axes into those of the bench."""
+        return quaternion(self._motion.attitude[0])
+
+    def angular_rate(self) -> Array:
+        """Return the spin of the core in its own axes [rad/s]."""
+        spin: Array = self._motion.now.R[-1].T @ self._motion.now.v[-1, 3:]
+        return spin
+
+    def specific_force(self) -> Array:
+        """Return what an accelerometer in the middle of the core reads, in the core's axes [m/s2]."""
+        gx, gz = self._gravity()
+        felt: Array = self._motion.now.R[-1].T @ (self._motion.now.a[-1, :3] - np.array([gx, 0.0, gz]))
+        return felt
+
+    def observe(self) -> dict[str, Any]:
+        """Return what a motion capture system and a thermal camera would say."""
+        tally = self._motion.tally
+        x, y, _ = self._centre()
+        return {
+            "travel_mm": 1e3 * (x - self._start[0]),
+            "lateral_mm": 1e3 * (y - self._start[1]),
+            "rotation_deg": degrees(tally[TURN]),
+            "apex_mm": 1e3 * max(0.0, float(tally[APEX]) - self._start[2]),
+            "clearance_mm": 1e3 * max(0.0, float(tally[CLEARANCE])),
+            "peak_coil_degc": float(tally[PEAK_T]),
+            "peak_coil_force_n": float(tally[PEAK_FORCE]),
+            "coil_degc": dict(zip(self.labels, self._state.T.tolist(), strict=True)),
+            "attitude": list(self.attitude()),
+            "down": self._down(),
+            "contacts": int(tally[CONTACTS]),
+            "jump": self._jump(),
+        }
+
+    def snapshot(self) -> dict[str, Any]:
+        """Return the shape at this moment in millimetres along, across and above the plane, and where coils pull."""
+        now, net, coils = self._motion.now, self._net, self._motion.coils
+        nodes = (1e3 * now.x).tolist()
+        starts = (1e3 * (now.x[net.near] + coils[ARM : ARM + 3].T)).tolist()
+        gx, gz = self._gravity()
+        return {
+            "t_s": float(self._motion.tally[TIME]),
+            "slope_deg": degrees(np.arctan2(-gx, -gz)) if gz else 0.0,
+            "hub": nodes[-1],
+            "attitude": list(self.attitude()),
+            "nodes": nodes[:-1],
+            "hoops": net.hoops.tolist(),
+            "strip_mm": 2e3 * float(abs(net.offsets).max(axis=0).min()),
+            "coils": {
+                label: {"degc": degc, "force_n": force, "from": start, "to": nodes[far]}
+                for label, degc, force, start, far in zip(
+                    self.labels, self._state.T.tolist(), self.force.tolist(), starts, net.far, strict=True
+                )
+            },
+            "energy_j": {name.removesuffix("_j"): value for name, value in self._stored().items()},
+            "terrain_mm": (1e3 * np.stack([self._terrain.x, self._terrain.z], axis=1)).tolist(),
+        }
+
+    def energies(self) -> dict[str, float]:
+        """Return what the body holds and what went in and out since the start [J]; `numerical_j` closes the balance.
+
+        Coils, tilting and ground give (the ground mostly takes), bending and air lose.
+        """
+        tally = self._motion.tally
+        given = {"coils_j": COIL_WORK, "tilt_j": TILT_WORK, "ground_j": GROUND_WORK}
+        lost = {"bending_loss_j": BEND_LOSS, "air_loss_j": DRAG_LOSS}
+        stored = self._stored()
+        balance = {name: float(tally[row]) for name, row in (given | lost).items()}
+        change = sum(stored.values()) - self._stored_at_start
+        gone = sum(balance[name] for name in given) - sum(balance[name] for name in lost)
+        return {**stored, **balance, "numerical_j": gone - change}
+
+    def effort(self) -> dict[str, int]:
+        """Return how many steps, rejected steps and Newton iterations it took so far."""
+        tally = self._motion.tally
+        return {"steps": int(tally[STEPS]), "rejected": int(tally[REJECTED]), "iterations": int(tally[ITERATIONS])}
+
+    def _placed(self, R: float, start: Attitude) -> tuple[Array, Array]:
+        """Return places and rotation of the round body, turned, its lowest point on the ground."""
+        turn = matrix(start.yaw, start.pitch, start.roll)
+        places = np.vstack([R * self._net.directions, np.zeros((1, 3))])
+        points = (places[self._net.feet] + self._net.offsets) @ turn.T
+        return places @ turn.T - [0.0, 0.0, points[:, 2].min()], turn
+
+    def _settle(self, seconds: float) -> None:
+        """Come to rest on the level ground in thick air, then begin to count."""
+        m, idle = self._motion, np.zeros(len(self.labels))
+        level, thick = self._world._replace(slope=0.0), self._net._replace(drag=SETTLING_DRAG)
+        freeze(self._coils, self._state.xi, m.coils)
+        begin(thick, self._terrain, gravity(level, 0.0), m)
+        if seconds > 0.0:
+            parts = (thick, self._terrain, self._coils, self._state, level, self._method, m, self._flight)
+            body.advance(*parts, idle, seconds)
+        m.now.v[:] = m.now.a[:] = 0.0
+        keep = m.tally[[STEP, ELASTIC, CONTACTS]]
+        m.tally[:] = 0.0
+        m.tally[[STEP, ELASTIC, CONTACTS]] = keep
+        self._flight[:] = flight.no_flight()
+        body.watch(self._net, self._state, m)
+        m.tally[TURN] = 0.0
+
+    def _take_hold(self) -> None:
+        """Let the plane begin to tilt a moment after now, when a coil is heated for the first time."""
+        self._taken_hold = True
+        self._world = self._world._replace(tilt_from=float(self._motion.tally[TIME]) + self._tilt_after)
+        self._parts = (*self._parts[:4], self._world, *self._parts[5:])
+
+    def _gravity(self) -> tuple[float, float]:
+        along: tuple[float, float] = gravity(self._world, float(self._motion.tally[TIME]))
+        return along
+
+    def _centre(self) -> tuple[float, float, float]:
+        x = self._motion.now.x
+        return tuple(float(centre(self._net, x, axis)) for axis in range(3))  # type: ignore[return-value]
+
+    def _down(self) -> str:
+        """Return the label of the coil from the core whose direction is nearest to down."""
+        down = -self._motion.attitude[0][2]
+        return max(self._compass, key=lambda label: float(self._compass[label] @ down))
+
+    def _jump(self) -> dict[str, float] | None:
+        """Return the highest flight, or None when there was none of more than a millimetre."""
+        record, mass = self._flight, float(self._net.mass.sum())
+        stored, z_0, left, z_1, t, speed = record[flight.BEST : flight.BEST + flight.ROW].tolist()
+        apex = float(record[flight.APEX]) - self._start[2]
+        if not float(record[flight.APEX]) - z_1 > 1e-3:
+            return None
+        flown = 0.5 * mass * speed**2 - mass * self._gravity()[1] * (z_1 - z_0)
+        return {
+            "stored_mj": 1e3 * stored,
+            "released_mj": 1e3 * (stored - left),
+            "takeoff_m_per_s": speed,
+            "takeoff_s": t,
+            "apex_mm": 1e3 * apex,
+            "losses_mj": 1e3 * (stored - left - flown),
+        }
+
+    def _stored(self) -> dict[str, float]:
+        """Return the mechanical energy of hoops and core [J]; that in the coils belongs to the coils."""
+        m, net = self._motion, self._net
+        gx, gz = self._gravity()
+        x, _, z = self._centre()
+        return {
+            "kinetic_j": float(kinetic(net, m.now)),
+            "gravity_j": -float(net.mass.sum() * (gx * x + gz * z)),
+            "elastic_j": float(m.tally[ELASTIC]),
+        }
