@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from hil_sim.board import Board
 from hil_sim.clock import Clock
+from hil_sim.devices.lsm6ds3tr import Motion
 from hil_sim.devices.ntc import Ntc
 from hil_sim.journal import Journal
 from hil_sim.record import CoilRecord
@@ -67,6 +68,7 @@ class Parts:
     battery: Battery | None = None  # on board, in place of the bench supply
     ambient_degc: float = 25.0
     ntc: Ntc | None = None
+    imu: bool = False  # an attitude sensor rides on the core, if the plant says how that moves
 
 
 class Bench:
@@ -88,7 +90,9 @@ class Bench:
         self.plant = plant
         series_ohm = np.array(parts.series_ohm, float)
         self.supply = Supply(series_ohm, parts.source_ohm, parts.shunt_ohm, parts.supply_v, parts.battery)
-        self.board = Board(self.clock, self.journal, self.supply, parts.outputs, parts.ntc or Ntc(), baud, identity)
+        motion = plant if parts.imu and isinstance(plant, Motion) else None
+        ntc = parts.ntc or Ntc()
+        self.board = Board(self.clock, self.journal, self.supply, parts.outputs, ntc, baud, identity, motion)
         self.board.degc = parts.ambient_degc
         self.board.changed = self._gates_changed
         self.coils = [CoilRecord(label) for label in plant.labels]
@@ -201,6 +205,8 @@ class Bench:
         if not duration_us:
             return
         self._advanced_us = self.clock.now_us
+        if self.board.imu is not None:
+            self.board.imu.before_change()
         self.plant.advance(duration_us, self.supply.power_w)
         self.supply.spend(duration_us)
         if self._hot:

@@ -2,7 +2,8 @@
 
 The outputs of both PWM chips drive only while the heartbeat keeps the monostable running and the emergency-stop loop
 is closed; the coils are fed only while PWR_EN is high. Both rest low, hence off, when the processor is reset; the
-chips keep their registers through that.
+chips keep their registers through that. An attitude sensor is there where the body has `motion` to be felt; its axes
+are the core's.
 
     board = Board(clock, journal, supply, outputs=[(0x60, 0), (0x60, 1)], ntc=Ntc())
     board.gates()  # what each coil is driven with
@@ -15,6 +16,7 @@ from hil_sim.clock import Clock
 from hil_sim.devices.gpio import Gpio
 from hil_sim.devices.i2c import Bus
 from hil_sim.devices.ina226 import Ina226, Source
+from hil_sim.devices.lsm6ds3tr import Lsm6ds3tr, Motion
 from hil_sim.devices.monostable import Monostable
 from hil_sim.devices.ntc import Ntc
 from hil_sim.devices.pca9685 import Gate, Pca9685
@@ -27,6 +29,7 @@ THERMISTOR_CHANNEL = 0
 HEARTBEAT_WINDOW_US = 50_000
 PWM_CHIPS = (0x60, 0x61)
 MONITOR = 0x40
+ATTITUDE = 0x6A
 _OFF = (0.0, 0.0)
 
 
@@ -42,6 +45,7 @@ class Board:
         ntc: Ntc,
         baud: int = 115_200,
         identity: str = "softrig",
+        motion: Motion | None = None,
     ) -> None:
         self.clock = clock
         self.journal = journal
@@ -52,7 +56,8 @@ class Board:
         self.unique_id = hashlib.sha256(identity.encode()).digest()[:8]
         self.pwm = {address: Pca9685(address, clock, self._on_change) for address in PWM_CHIPS}
         self.monitor = Ina226(MONITOR, clock, source)
-        self.bus = Bus([*self.pwm.values(), self.monitor])
+        self.imu = None if motion is None else Lsm6ds3tr(ATTITUDE, clock, motion, identity)
+        self.bus = Bus([*self.pwm.values(), self.monitor, *([self.imu] if self.imu else [])])
         self.ntc = ntc
         self.uart = Uart(baud)
         self.monostable = Monostable(clock, HEARTBEAT_WINDOW_US, self._on_enable)
@@ -90,6 +95,8 @@ class Board:
         for chip in self.pwm.values():
             chip.reset()
         self.monitor.reset()
+        if self.imu is not None:
+            self.imu.reset()
 
     def host_write(self, data: bytes) -> None:
         """Put bytes of the host on the serial line."""
