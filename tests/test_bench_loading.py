@@ -13,26 +13,30 @@ from hil_sim.link import open_link
 from hil_sim.physics.compiled import prepare
 
 RUN_A_HOT_SECOND = """
+import sys
 from numba.core.caching import Cache
 from hil_sim.link import open_link
 from host.robot import Robot
 
-link = open_link("sim:circular")
+link = open_link(sys.argv[1])
 loaded, load = [], Cache.load_overload
 Cache.load_overload = lambda cache, *rest: loaded.append(cache._name) or load(cache, *rest)
 with Robot(link) as robot:
     robot.connect()
     robot.subscribe(50)
     robot.arm()
-    robot.fire(["A", "B"], duty_permille=600, hold_ms=500)
+    robot.fire(sys.argv[2:], duty_permille=600, hold_ms=500)
     for _ in robot.listen(1000):
         link.observer.observe(), link.observer.snapshot()
 print(loaded)
 """
 
 
-def test_no_machine_code_is_loaded_once_the_line_is_open():
-    told = subprocess.run([sys.executable, "-c", RUN_A_HOT_SECOND], capture_output=True, text=True, check=True)
+@pytest.mark.parametrize("robot", ["circular A B", "sphere-a A00m1 A10m1", "sphere-b A00m1 B10m1"])
+def test_no_machine_code_is_loaded_once_the_line_is_open(robot):
+    run = [sys.executable, "-c", RUN_A_HOT_SECOND, *f"sim:{robot}".split()]
+
+    told = subprocess.run(run, capture_output=True, text=True, check=True)
 
     assert told.stdout == "[]\n"
 
