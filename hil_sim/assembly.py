@@ -69,4 +69,5 @@ def parts_of(robot: RobotFile) -> Parts:
         battery=Battery(robot.battery) if robot.battery else None,
         ambient_degc=robot.ground.T_amb,
         ntc=Ntc(sensors.ntc_ohm, sensors.ntc_beta_k, sensors.ntc_pull_up_ohm),
+        imu=sensors.imu > 0,
     )

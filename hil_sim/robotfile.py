@@ -56,6 +56,7 @@ class Sensors:
     ntc_ohm: float  # at 25 degC
     ntc_beta_k: float
     ntc_pull_up_ohm: float
+    imu: float = 0.0  # how many attitude sensors ride on the core
 
 
 @dataclass(frozen=True)

@@ -109,6 +109,7 @@ KEYS = (
     Key("sensors", "ntc_ohm", "sensors", "ntc_ohm", 1.0, 1, 1e8),
     Key("sensors", "ntc_beta_k", "sensors", "ntc_beta_k", 1.0, 1, 100000),
     Key("sensors", "ntc_pull_up_ohm", "sensors", "ntc_pull_up_ohm", 1.0, 1, 1e8),
+    Key("sensors", "imu_count", "sensors", "imu", 1.0, 0, 1, SPHERE, 1),
     Key("ground", "slope_deg", "ground", "slope", radians(1), -60, 60),
     Key("ground", "tilt_after_s", "ground", "tilt_after", 1.0, 0, 3600),
     Key("ground", "tilt_deg_per_s", "ground", "tilt_rate", radians(1), 0.01, 1000),
