@@ -16,6 +16,7 @@ from hil_sim.physics.bodies import SphereNumbers
 AXES = {sign + axis: float(sign + "1") * np.eye(3)[i] for i, axis in enumerate("xyz") for sign in "+-"}
 TREE = (("-z", "+x"), ("-z", "+y"), ("-z", "-x"), ("-z", "-y"), ("+x", "+z"))  # in the order of building
 CUT = (("+z", "+y"), ("+z", "-x"), ("+z", "-y"), ("+x", "+y"), ("+y", "-x"), ("-x", "-y"), ("-y", "+x"))
+STIFF = [0.9999, 0.9999, 1e-3, 0.5, 2]  # as hard as a constraint may be
 TOE = 1e-4  # radius of what touches the ground at a node [m]
 
 
@@ -102,4 +103,6 @@ class Weaver:
         weld = self.spec.add_equality(
             type=mujoco.mjtEq.mjEQ_WELD, objtype=mujoco.mjtObj.mjOBJ_BODY, name1=one, name2=other
         )
-        weld.data[10] = self.arm  # an angle counts as much as a distance
+        weld.data[1] = 0.0  # of the anchor: unset, it would be 1 m away
+        weld.data[10] = 1.0  # its rotation is as stiff as MuJoCo means it only where a radian counts as a metre
+        weld.solimp = STIFF
