@@ -11,6 +11,7 @@ from hil_sim.robotcheck import near
 from hil_sim.robotfile import RobotFile, RobotFileError, load
 from hil_sim.robotkeys import RING
 from hil_sim.soundness import CameApart
+from hil_sim.sphere import SpherePlant
 from hil_sim.supply import Battery
 from hil_sim.worlds.image import Image
 
@@ -37,11 +38,7 @@ def assemble(address: Address) -> Bench:
 
 def plant_of(robot: RobotFile, seed: int) -> Plant:
     """Return the body of a robot; the seed makes its terrain."""
-    if robot.kind == RING:
-        return RingPlant(robot, seed)
-    from hil_sim.sphere import SpherePlant  # noqa: PLC0415
-
-    return SpherePlant(robot, seed)
+    return RingPlant(robot, seed) if robot.kind == RING else SpherePlant(robot, seed)
 
 
 def _agree(robot: RobotFile, profile: bytes) -> None:
