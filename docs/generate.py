@@ -37,6 +37,8 @@ ARGUMENTS = {
     "guard": "condition u64",
     "step": "number u16",
     "off": "coils u32",
+    "aim": "place u8, ahead u8, circle of 8 channels u64 [255: none]",
+    "aimed": "place u8, duty u16 [permille], time u16 [ms], cut-off u16 [0.1 C; 0: none], ramp u16 [ms]",
 }
 UNITS = {
     "_uj_per_k": "µJ/K", "_uw_per_k": "µW/K", "_mv": "mV", "_ma": "mA", "_mj": "mJ", "_uj": "µJ", "_mohm": "mΩ",
@@ -96,7 +98,9 @@ def protocol_page() -> str:
             format=program.FORMAT,
             outlives=program.OUTLIVES_HOST,
             ops=op_table(),
-            sources="1 coil temperature, 2 supply current, 3 supply voltage, 4 board temperature",
+            sources="1 coil temperature, 2 supply current, 3 supply voltage, 4 board temperature, 5 coil heat, "
+            "6 roll, 7 pitch, 8 coil nearest to down",
+            aims_max=program.AIMS_MAX,
             depth_max=program.DEPTH_MAX,
             guards_max=program.GUARDS_MAX,
         )
@@ -158,7 +162,8 @@ def limits_page() -> str:
             for i, c in enumerate(profile["channels"])
         ]
         groups = [(name, labels) for name, labels in profile["groups"]]
-        parts += [f"## {profile['robot']}\nSupply {profile['supply_mv']} mV.\n"]
+        sensor = f" Attitude sensor at 0x{profile['imu']['address']:02X}." if "imu" in profile else ""
+        parts += [f"## {profile['robot']}\nSupply {profile['supply_mv']} mV.{sensor}\n"]
         parts += [table(("bit", "label", "kind", "chip", "output"), channels), table(("group", "labels"), groups)]
         sections = ("coil", "supply", "session", "program")
         limits = [

@@ -54,7 +54,12 @@ def ball(**coil):
 
 def circular():
     """Return the profile of the circular robot, as its firmware sends it."""
-    return read_profile((ROOT / "firmware" / "robots" / "circular.json").read_bytes())
+    return profile_of("circular")
+
+
+def profile_of(robot):
+    """Return the profile of a robot by its name, as its firmware sends it."""
+    return read_profile((ROOT / "firmware" / "robots" / f"{robot}.json").read_bytes())
 
 
 def compiled(body, *overrides, profile=None, head=HEAD):
