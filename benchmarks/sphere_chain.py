@@ -13,16 +13,23 @@ import numpy as np
 
 from hil_sim.physics.bodies import SphereNumbers
 
+Arcs = tuple[tuple[str, str], ...]
 AXES = {sign + axis: float(sign + "1") * np.eye(3)[i] for i, axis in enumerate("xyz") for sign in "+-"}
-TREE = (("-z", "+x"), ("-z", "+y"), ("-z", "-x"), ("-z", "-y"), ("+x", "+z"))  # in the order of building
-CUT = (("+z", "+y"), ("+z", "-x"), ("+z", "-y"), ("+x", "+y"), ("+y", "-x"), ("-x", "-y"), ("-y", "+x"))
+ONE = (("-z", "+x"), ("-z", "-x"), ("+x", "+z")), (("+z", "-x"),)  # the tree in the order of building, and what is cut
+THREE = (
+    (("-z", "+x"), ("-z", "+y"), ("-z", "-x"), ("-z", "-y"), ("+x", "+z")),
+    (("+z", "+y"), ("+z", "-x"), ("+z", "-y"), ("+x", "+y"), ("+y", "-x"), ("-x", "-y"), ("-y", "+x")),
+)
 STIFF = [0.9999, 0.9999, 1e-3, 0.5, 2]  # as hard as a constraint may be
 TOE = 1e-4  # radius of what touches the ground at a node [m]
 
 
-def sphere_chain(numbers: SphereNumbers, nodes: int, stretch: bool = False) -> mujoco.MjSpec:
-    """Return the free sphere, its centre at the origin; its crossings are the bodies "-x", "+x", ... "+z"."""
-    return Weaver(numbers, nodes, stretch).weave()
+def sphere_chain(numbers: SphereNumbers, nodes: int, stretch: bool = False, hoops: int = 3) -> mujoco.MjSpec:
+    """Return the free sphere, its centre at the origin; its crossings are the bodies "-x", "+x", ... "+z".
+
+    With 1 hoop for 3 it has the masses of a third of a sphere, to compare the cost.
+    """
+    return Weaver(numbers, nodes, stretch).weave(*(ONE if hoops == 1 else THREE))
 
 
 class Weaver:
@@ -37,15 +44,15 @@ class Weaver:
         self.link = numbers.m / 3 / nodes  # mass of a link [kg]
         self.rest = {"-z": (numbers.R * AXES["-z"], np.eye(3))}  # place and axes of a body in the round sphere
 
-    def weave(self) -> mujoco.MjSpec:
+    def weave(self, tree: Arcs, cut: Arcs) -> mujoco.MjSpec:
         """Lay all arcs and return the specification."""
         crossing = 2 * self.link + self.numbers.m_joints / 6
         root = self.spec.worldbody.add_body(name="-z", pos=self.rest["-z"][0])
         root.add_freejoint()
         self.load(root, crossing)
-        for start, end in TREE:
+        for start, end in tree:
             self.lay(start, end, self.steps, end, crossing)
-        for start, end in CUT:
+        for start, end in cut:
             middle = self.steps // 2
             self.lay(start, end, middle, start + end, self.link / 2)
             self.lay(end, start, self.steps - middle, end + start, self.link / 2)
