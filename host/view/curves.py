@@ -11,6 +11,7 @@ from host.view.instants import Numbers, scene_times
 from host.view.style import COILS, INK, Style, coil_colour, coil_dash
 
 FAR_MM = 2000.0
+STILL_MM = 2.0
 FEW = 8  # coils
 TOGETHER_S = 0.3  # peaks closer than this share one letter
 Place = tuple[float, float, str]  # time [s], height [degC], colour
@@ -23,11 +24,12 @@ def record_times(recording: Recording) -> Numbers:
 
 
 def used(recording: Recording) -> list[int]:
-    """Return which coils have curves: all of a robot with few, else those that were driven."""
+    """Return which coils have curves: all of a robot with few, else those that were driven, in their order."""
     count = len(recording.labels)
     if count <= FEW:
         return list(range(count))
-    return [i for i in range(count) if any(row.duty_permille[i] for row in recording.telemetry)]
+    on = np.array([row.duty_permille for row in recording.telemetry]) > 0
+    return sorted(np.flatnonzero(on.any(axis=0)).tolist(), key=lambda i: int(on[:, i].argmax()))
 
 
 def draw_temperatures(axes: Axes, recording: Recording) -> None:
@@ -85,6 +87,8 @@ def draw_travel(axes: Axes, recording: Recording) -> None:
     far = float(np.abs(travel).max()) >= FAR_MM
     axes.plot(scene_times(recording), travel / 1000 if far else travel, color=COILS[0], lw=1.1)
     axes.margins(y=0.12)
+    if np.ptp(travel) < STILL_MM:  # a body that stays where it is
+        axes.set_ylim(travel.mean() - STILL_MM, travel.mean() + STILL_MM)
     axes.set_ylabel("travel [m]" if far else "travel [mm]")
 
 

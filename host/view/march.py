@@ -25,8 +25,9 @@ BESIDE = 0.42  # room for names beside a body, of its width
 HEAD = 0.16  # room for the time above it
 BELOW = 0.15  # room for the scale below the ground
 ALONG = 0.3  # ground before the first and beyond the last body
-ROOM, UPWARD = 1.5, 1.3  # from one body to the next, when both are drawn whole; upward less will do
+ROOM, UPWARD = 1.25, 1.1  # from one body to the next, when both are drawn whole; upward less will do
 ROW = 4  # frames
+BEHIND = {"fc": "white", "ec": "none", "pad": 0.4}  # a time: the path does not strike it through
 QUICK_MS = 100  # frames closer than this carry their milliseconds
 STRIP_TICKS, FRAME_TICKS = 20, 5
 
@@ -103,7 +104,7 @@ def write_time(axes: Axes, scene: Scene, slope_deg: float, recording: Recording,
     place = (float(shape[:, 0].min() + shape[:, 0].max()) / 2, float(shape[:, 1].max()))
     time = f"{max(0.0, recording.seconds(scene['host_ms'])):.{decimals}f} s"
     style: Style = {"ha": "center", "va": "bottom", "fontsize": 6.5, "color": INK, "zorder": 6}
-    axes.annotate(time, place, (0, 2), textcoords="offset points", **style)
+    axes.annotate(time, place, (0, 2), textcoords="offset points", bbox=BEHIND, **style)
 
 
 def _draw_named(

@@ -20,6 +20,7 @@ from host.view.style import FAINT, INK, Style
 
 HOT_DEGC = 60.0  # a coil that is hotter is named also when it is no longer driven
 MOST_NAMES = 5
+LEFTWARD = 0.15  # of the body's width: nearer to the middle than this a coil's name stands on the left
 ASIDE = 0.07  # from the body to the names, of its width
 APART = 0.1  # between two names, of the body's width
 HALO = [Stroke(linewidth=1.6, foreground="white"), Normal()]
@@ -56,7 +57,7 @@ def named(scene: Scene, driven: Collection[str]) -> list[str]:
 def write_names(axes: Axes, scene: Scene, names: list[str], slope_deg: float, width_mm: float) -> None:
     """Write names of coils beside the body, on either side in the order of their heights, each led to by a line."""
     shape = outline(scene, slope_deg)
-    middle = float(shape[:, 0].min() + shape[:, 0].max()) / 2
+    middle = float(shape[:, 0].min() + shape[:, 0].max()) / 2 + LEFTWARD * width_mm
     points = {label: _pulling(scene, label, slope_deg) for label in names}
     rising = sorted(names, key=lambda label: float(points[label][1]))
     for side, edge in ((-1, shape[:, 0].min()), (1, shape[:, 0].max())):
