@@ -1,10 +1,12 @@
 """A run of the firmware's core that any Python can make: prints every byte it sends and every duty it sets.
 
 Runs under CPython and under MicroPython; tests/test_firmware_micropython.py compares what the two print. Arguments:
-the profile's path, then `lock` to forbid memory allocation in the control step.
+the profile's path, then `lock` to forbid memory allocation in the control step. A profile with an attitude sensor gets
+one that rolls, is lost and comes back, and a program that asks where down is.
 """
 
 import sys
+from array import array
 from binascii import crc32, hexlify
 
 from firmware.core import Core
@@ -39,6 +41,7 @@ class Monitor:
 
     address = 0x40
     ma = 20
+    mv = 2000
 
     def begin(self):
         print("begin")
@@ -50,11 +53,37 @@ class Monitor:
         return self.ma
 
     def voltage_mv(self):
-        return 2000
+        return self.mv
+
+
+class Imu:
+    """An attitude sensor that turns forward by 180 deg/s, falls silent from the third second on for half a second."""
+
+    def __init__(self):
+        self.words = array("h", [0] * 6)
+        self._turn = 0
+
+    def begin(self):
+        print("begin")
+
+    def configured(self):
+        return True
+
+    def read(self):
+        self._turn += 1
+        way = CIRCLE[self._turn // 25 % 8]
+        self.words[1] = 5143
+        self.words[2] = self._turn & 1
+        self.words[3] = way[0]
+        self.words[5] = way[1]
+        return not 300 <= self._turn < 350
 
 
 class Table:
     """A board on a table top."""
+
+    def imu(self, address):
+        return Imu()
 
     def pwm(self, address):
         return Chip()
@@ -75,6 +104,7 @@ class Table:
         return 251
 
 
+CIRCLE = ((0, 8197), (-5796, 5796), (-8197, 0), (-5796, -5796), (0, -8197), (5796, -5796), (8197, 0), (5796, 5796))
 told = []
 LOCKED = "lock" in sys.argv
 
@@ -108,9 +138,25 @@ def script():
     return b"".join(ops)
 
 
-def orders(crc):
+def rolling():
+    """Return a program that asks where down is in every way."""
+    ahead = program.Condition(program.DOWN, program.CHOSEN, program.IS, 0, 1)
+    cool = program.Condition(program.HEAT, program.CHOSEN, program.BELOW, 500, 1)
+    turned = program.Condition(program.PITCH, program.ANY, program.ABOVE, 300, 0)
+    leans = program.Condition(program.ROLL, program.ANY, program.ABOVE, 800, 0)
+    ops = (
+        program.guard(leans), program.repeat(20), program.step(1), program.aim(1, 1, [5, 12, 0, 10, 4, 11, 1, 13]),
+        program.wait(cool, 300, program.ABORT), program.aimed(1, 700, 60, 1000, 20), program.delay(80),
+        program.wait(ahead, 200, program.CONTINUE), program.wait(turned, 40, program.CONTINUE), program.next_(),
+        program.halt(),
+    )  # fmt: skip
+    return b"".join(ops)
+
+
+def orders(profile):
     """Return (time_ms, message, fields) of a whole session, mistakes included."""
-    code = script()
+    crc = profile.crc
+    code = rolling() if profile.imu_address else script()
     return [
         (0, messages.HELLO, {"version": 1, "session": SESSION}),
         (20, messages.DICTIONARY, {"offset": 0}),
@@ -130,7 +176,7 @@ def orders(crc):
 def session(core, profile):
     """Run the session, then stop; print all that happens."""
     host = Link(core.link.decoder.seed)
-    plan = orders(profile.crc)
+    plan = orders(profile)
     for now_ms in range(0, 4500, 5):
         line = b""
         while plan and plan[0][0] <= now_ms:
@@ -155,6 +201,7 @@ def session(core, profile):
 
 with open(sys.argv[1], "rb") as file:
     profile = Profile(file.read())
+Monitor.mv = profile.supply.nominal_mv
 if LOCKED:
     import micropython
 

@@ -12,27 +12,33 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 TRIAL = ROOT / "tests" / "image_trial.py"
-PROFILE = ROOT / "firmware" / "robots" / "circular.json"
+ROBOTS = ROOT / "firmware" / "robots"
 MICROPYTHON = os.environ.get("SOFTRIG_MICROPYTHON", str(Path(sys.executable).with_name("micropython")))
 
 
-def printed(interpreter, *arguments):
-    """Return what the trial prints under that interpreter."""
+def printed(interpreter, robot, *arguments):
+    """Return what the trial of a robot prints under that interpreter."""
     paths = {"MICROPYPATH": f"{ROOT}:.frozen", "PYTHONPATH": str(ROOT)}
-    command = [interpreter, str(TRIAL), str(PROFILE), *arguments]
+    command = [interpreter, str(TRIAL), str(ROBOTS / f"{robot}.json"), *arguments]
     done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, **paths}, check=False)
     assert done.returncode == 0, done.stdout[-500:] + done.stderr
     return done.stdout.splitlines()
 
 
+@pytest.fixture(scope="module", params=["circular", "sphere-a"])
+def robot(request):
+    """A robot without and one with an attitude sensor."""
+    return request.param
+
+
 @pytest.fixture(scope="module")
-def here():
+def here(robot):
     """What the trial prints in CPython."""
-    return printed(sys.executable)
+    return printed(sys.executable, robot)
 
 
-def test_both_interpreters_send_the_same_bytes_and_set_the_same_duties(here):
-    assert printed(MICROPYTHON) == here
+def test_both_interpreters_send_the_same_bytes_and_set_the_same_duties(here, robot):
+    assert printed(MICROPYTHON, robot) == here
 
 
 def test_the_trial_looks_at_orders_programs_faults_and_telemetry(here):
@@ -43,5 +49,5 @@ def test_the_trial_looks_at_orders_programs_faults_and_telemetry(here):
     assert len([line for line in here if " sent " in line]) > 50
 
 
-def test_the_control_step_allocates_no_memory_in_any_state():
-    assert printed(MICROPYTHON, "lock")[-1].startswith("dictionary")
+def test_the_control_step_allocates_no_memory_in_any_state(robot):
+    assert printed(MICROPYTHON, robot, "lock")[-1].startswith("dictionary")
