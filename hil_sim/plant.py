@@ -40,7 +40,6 @@ from hil_sim.physics.state import (
     STEPS,
     TILT_WORK,
     TIME,
-    TOLERANCE,
     TURN,
     method_of,
     motion_of,
@@ -53,7 +52,7 @@ SETTLING_DRAG = 20.0  # [1/s] ASSUMED: numerical, the ring is at rest within its
 class RingPlant:
     """Coils, ring and ground of one robot, at rest at time 0; a function of the powers given to it and nothing else."""
 
-    def __init__(self, robot: RobotFile, seed: int = 0, rho: float = 0.8, tolerance: float = TOLERANCE) -> None:
+    def __init__(self, robot: RobotFile, seed: int = 0, rho: float = 0.8, tolerance: float | None = None) -> None:
         prepare(body.advance)
         numbers, start = robot.ring, robot.start
         if numbers is None or not isinstance(start, StartNumbers):
@@ -63,7 +62,7 @@ class RingPlant:
         self._ring = ring_of(numbers, ground, count, seed)
         self._world = body.World(ground.gravity, ground.slope, inf, abs(ground.slope) / ground.tilt_rate)
         self._tilt_after, self._taken_hold = ground.tilt_after, False
-        self._method = method_of(rho, tolerance)
+        self._method = method_of(rho, tolerance or robot.tolerance)
         R = numbers.R
         self._motion = motion_of(self._ring, round_pose(self._ring, R, R, start.turn))
         self._motion.spokes[[LENGTH, LENGTH_BEFORE]] = R - numbers.attach

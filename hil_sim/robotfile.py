@@ -74,6 +74,7 @@ class RobotFile:
     coil: CoilNumbers
     ground: GroundNumbers
     start: StartNumbers | Attitude
+    tolerance: float  # of a step in time [m]
     wiring: Wiring
     battery: BatteryNumbers | None
     sensors: Sensors
@@ -137,6 +138,7 @@ def _robot(path: Path, data: dict[str, Any], rows: Sequence[Key], entries: Mappi
         coil=CoilNumbers(**groups["coil"]),
         ground=GroundNumbers(**groups["ground"]),
         start=(StartNumbers if kind == RING else Attitude)(**groups["start"]),
+        tolerance=groups["numerics"]["tolerance"],
         wiring=Wiring(outputs=outputs, **groups["wiring"]),
         battery=BatteryNumbers(**groups["battery"]) if groups["battery"] else None,
         sensors=Sensors(**groups["sensors"]),

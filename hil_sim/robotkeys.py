@@ -127,6 +127,7 @@ KEYS = (
     Key("start", "pitch_deg", "start", "pitch", radians(1), -360, 360, SPHERE),
     Key("start", "roll_deg", "start", "roll", radians(1), -360, 360, SPHERE),
     Key("start", "settle_s", "start", "settle", 1.0, 0, 60),
+    Key("numerics", "tolerance_um", "numerics", "tolerance", 1e-6, 0.001, 1000),
 )
 
 

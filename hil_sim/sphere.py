@@ -51,13 +51,12 @@ from hil_sim.physics.terrain import terrain_of
 from hil_sim.robotfile import RobotFile
 
 SETTLING_DRAG = 20.0  # [1/s] ASSUMED: numerical, the body is at rest within its settle_s
-TOLERANCE = 1e-4  # of the radius, in a step
 
 
 class SpherePlant:
     """Coils, hoops, core and ground of one robot, at rest at time 0; a function of the powers given to it."""
 
-    def __init__(self, robot: RobotFile, seed: int = 0, rho: float = 0.5, tolerance: float = TOLERANCE) -> None:
+    def __init__(self, robot: RobotFile, seed: int = 0, rho: float = 0.5, tolerance: float | None = None) -> None:
         assert robot.sphere is not None
         assert isinstance(robot.start, Attitude)
         prepare(body.advance)
@@ -70,7 +69,7 @@ class SpherePlant:
         self._terrain = terrain_of(ground, seed, 2.0 * numbers.R)
         self._world = World(ground.gravity, ground.slope, inf, abs(ground.slope) / ground.tilt_rate)
         self._tilt_after, self._taken_hold = ground.tilt_after, False
-        self._method = method_of(rho, tolerance * numbers.R)
+        self._method = method_of(rho, tolerance or robot.tolerance)
         self._motion = motion_of(self._net, *self._placed(numbers.R, robot.start))
         self._flight = flight.no_flight()
         coils = coils_of(robot.coil, count, ground.T_amb)
