@@ -109,7 +109,7 @@ def _draw_scale(axes: Axes, profile: Points, half: float, step: float, slope_deg
     base = min(0.0, float(profile[:, 1].min()))
     for x in shown:
         place = tuple(_at([[x, base]], -half, slope_deg)[0])
-        text = "mm" if x == shown[-1] else f"{x:g}"
+        text = "mm" if x == shown[-1] else f"{x + 0.0:g}"
         style: Style = {"ha": "center", "va": "top", "fontsize": 6, "color": GROUND, "rotation": slope_deg}
         axes.annotate(text, place, (0, -2.5), textcoords="offset points", **style)
 
