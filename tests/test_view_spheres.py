@@ -6,6 +6,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from host.errors import BadRequest
 from host.view import draw_film, draw_jump, draw_run
@@ -13,7 +14,7 @@ from host.view.camera import distance, on_paper, plumb, silhouette
 from host.view.energy import instants_of
 from host.view.floor import grid_mm, profile_of
 from host.view.jump import flight_of, release_of
-from host.view.solids import core_radius, curved, edges, shaded, springs, strips
+from host.view.solids import core_radius, curved, edges, paint, shaded, springs, strips
 from host.view.sphere import named, spread
 from host.view.style import heat_scale
 from tests.rolling_sphere import JumpingSphere, RollingSphere, recorded_jump, recorded_sphere
@@ -85,6 +86,17 @@ def test_nearer_pieces_of_a_hoop_are_darker(scene):
     light = [sum(piece.filling[:3]) for piece in pieces]
     assert light == sorted(light)
     assert sum(shaded(-1.0)[:3]) < sum(shaded(1.0)[:3])
+
+
+def test_what_is_nearer_is_painted_later(scene):
+    axes = Figure().add_subplot()
+    pieces = list(strips(scene, 0.0))
+
+    paint(axes, pieces, zorder=3)
+
+    (drawn,) = axes.collections
+    last = drawn.get_paths()[-1].vertices[:-1]
+    assert last == pytest.approx(min(pieces, key=lambda piece: piece.away).points)
 
 
 def test_each_coil_is_drawn_and_a_driven_one_has_a_dot(scene):
