@@ -3,6 +3,7 @@
 For tests of one firmware module in CPython. Whole-robot tests use the bench (`rig` in conftest.py) instead.
 """
 
+from array import array
 from pathlib import Path
 
 from firmware.core import Core
@@ -11,6 +12,7 @@ from protocol import messages, program
 from protocol.link import Link
 
 PROFILE = Path(__file__).parent.parent / "firmware" / "robots" / "circular.json"
+BALL = PROFILE.with_name("sphere-a.json")  # a robot with an attitude sensor
 SESSION = 77
 
 
@@ -75,12 +77,47 @@ class Monitor:
         return value
 
 
+class Imu:
+    """An attitude sensor on a body that lies as a test says; its last bits are never still."""
+
+    def __init__(self) -> None:
+        self.words = array("h", [0] * 6)
+        self.force = (0, 0, 8197)  # of one g at rest, upright
+        self.rate = (0, 0, 0)
+        self.absent = self.other = self.lost = self.stuck = self.silent = False
+        self.starts = 0
+
+    def begin(self) -> None:
+        self.starts += 1
+        self._reach()
+        if self.other:
+            raise OSError(19, "ENODEV")
+        self.lost = False
+
+    def configured(self) -> bool:
+        self._reach()
+        return not self.lost
+
+    def read(self) -> bool:
+        self._reach()
+        if not self.stuck:
+            noise = 1 - (self.words[0] - self.rate[0])
+            for i, word in enumerate((self.rate[0] + noise, *self.rate[1:], *self.force)):
+                self.words[i] = word
+        return not (self.silent or self.lost)
+
+    def _reach(self) -> None:
+        if self.absent:
+            raise OSError(5, "EIO")
+
+
 class Table:
     """The board of the core under test."""
 
     def __init__(self) -> None:
         self.chip = Chip()
         self.supply = Monitor()
+        self.sensor = Imu()
         self.powered = False
         self.beats = 0
         self.closed = True
@@ -91,6 +128,9 @@ class Table:
 
     def monitor(self, shunt_mohm: int) -> Monitor:
         return self.supply
+
+    def imu(self, address: int) -> Imu:
+        return self.sensor
 
     def power(self, on: bool) -> None:
         self.powered = on
@@ -108,9 +148,10 @@ class Table:
 class Rig:
     """A core on the table and a host that talks to it frame by frame, in steps of 5 ms."""
 
-    def __init__(self) -> None:
+    def __init__(self, profile: Path = PROFILE) -> None:
         self.board = Table()
-        self.profile = Profile(PROFILE.read_bytes())
+        self.profile = Profile(profile.read_bytes())
+        self.board.supply.mv = self.profile.supply.nominal_mv
         self.core = Core(self.board, self.profile, boot=1)
         self.host = Link(self.core.link.decoder.seed)
         self.got = []
