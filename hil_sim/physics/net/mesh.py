@@ -55,9 +55,11 @@ class Net(NamedTuple):
     far: Ints  # (S,)
     arms: Array  # offset of the place on `near` (S, 3) [m]
     pulls: Ints  # slot of the block between them (S,)
-    near_last: Ints  # 1 where `near` is the later in the order of elimination (S,)
+    near_last: Ints  # 1 where `near` is the later in the order of elimination, as the core is (S,)
     coil_damping: float  # [N s/m]
     core_radius: float  # [m]
+    width: float  # of the strips [m]
+    to_core: Ints  # slot of the block of each node, columns, with the core, rows (B - 1,)
     hoops: Ints  # bodies in order round each hoop (H, N)
     directions: Array  # of the nodes from the centre of the round body (B - 1, 3) [1]
     pattern: Pattern
@@ -79,7 +81,7 @@ def net_of(
     count, core = len(directions), len(directions)
     near, far, arms = _coils(directions, core, p.attach, spokes, chords)
     first, second, axes = _elements(hoops, circles, directions)
-    couples = [*zip(first, second, strict=True), *zip(near, far, strict=True)]
+    couples = [*zip(first, second, strict=True), *zip(near, far, strict=True), *((node, core) for node in range(core))]
     pattern = pattern_of(count + 1, sorted({(int(min(pair)), int(max(pair))) for pair in couples}))
     ends, beams = _ordered(pattern, first, second, axes)
     found = [slot(pattern, a, b) for a, b in zip(near.tolist(), far.tolist(), strict=True)]
@@ -92,7 +94,7 @@ def net_of(
         feet, offsets, ground.k_n, ground.c_n, ground.mu,
         near, far, arms, np.array([place for place, _ in found], dtype=np.int64),
         np.array([int(later) for _, later in found], dtype=np.int64),
-        p.damping, p.r_core, hoops, directions, pattern,
+        p.damping, p.r_core, p.width, _to_core(pattern), hoops, directions, pattern,
     )  # fmt: skip
 
 
@@ -133,6 +135,12 @@ def _ordered(pattern: Pattern, first: Ints, second: Ints, axes: Array) -> tuple[
     axes[swap, :2] *= -1.0
     ends = np.stack([np.where(swap, second, first), np.where(swap, first, second)], axis=1)
     return ends, np.array([slot(pattern, int(a), int(b))[0] for a, b in ends], dtype=np.int64)
+
+
+def _to_core(pattern: Pattern) -> Ints:
+    """Return the slots of the blocks between the nodes and the core, which is coupled to all and eliminated last."""
+    core = pattern.place.size - 1
+    return np.array([slot(pattern, core, node)[0] for node in range(core)], dtype=np.int64)
 
 
 def _coils(

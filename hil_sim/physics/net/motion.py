@@ -76,7 +76,7 @@ def forces(net: Net, terrain: Terrain, g: tuple[float, float], m: Motion, s: Sta
             s.f[b, 3 + p] += net.inertia[b] * net.drag * s.v[b, 3 + p]
         s.f[b, 0] -= net.mass[b] * g[0]
         s.f[b, 2] -= net.mass[b] * g[1]
-    return core_forces(net, s.x, s.f), energy, loss
+    return core_forces(net, s.x, m.work, m.near, s.f), energy, loss
 
 
 @kernel
@@ -103,7 +103,7 @@ def correct(net: Net, m: Motion, cv: float, ca: float, near: bool) -> bool:
     coil_tangent(net, cv, m.coils, m.blocks)
     ground_tangent(net, m.new.x, cv, m.touch, m.blocks)
     if near:
-        core_tangent(net, m.new.x, m.blocks)
+        core_tangent(net, m.near, m.blocks)
     if not factor(net.pattern, m.blocks):
         return False
     solve(net.pattern, m.blocks, m.rhs, m.correction)

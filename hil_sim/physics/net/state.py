@@ -7,6 +7,7 @@ import numpy as np
 from hil_sim.physics.compiled import Array
 from hil_sim.physics.net.beam import WORK_COLUMNS
 from hil_sim.physics.net.ground import TOUCH_COLUMNS
+from hil_sim.physics.net.inside import NEAR_COLUMNS
 from hil_sim.physics.net.mesh import Net
 from hil_sim.physics.net.pulls import COIL_ROWS
 
@@ -39,6 +40,7 @@ class Motion(NamedTuple):
     coils: Array  # (COIL_ROWS, S)
     tally: Array
     work: Array  # (E, WORK_COLUMNS)
+    near: Array  # (E, NEAR_COLUMNS)
     blocks: Array  # (slots, 6, 6)
     rhs: Array  # (B, 6)
     correction: Array  # (B, 6)
@@ -61,7 +63,7 @@ def motion_of(net: Net, x: Array, R: Array) -> Motion:
     tally[STEP] = 1e-4
     return Motion(
         now, state_of(count), np.zeros((count, 6)), np.zeros((points, TOUCH_COLUMNS)),
-        np.zeros((COIL_ROWS, net.near.size)), tally, np.zeros((net.beams.size, WORK_COLUMNS)),
-        np.zeros((net.pattern.slots, 6, 6)), np.zeros((count, 6)), np.zeros((count, 6)),
-        np.stack([R, R]),
+        np.zeros((COIL_ROWS, net.near.size)), tally,
+        np.zeros((net.beams.size, WORK_COLUMNS)), np.zeros((net.beams.size, NEAR_COLUMNS)),
+        np.zeros((net.pattern.slots, 6, 6)), np.zeros((count, 6)), np.zeros((count, 6)), np.stack([R, R]),
     )  # fmt: skip
