@@ -67,9 +67,9 @@ def compiled(body, *overrides, profile=None, head=HEAD):
     return compile_script(loads(head + body + "\n"), profile or round_robot(), overrides)
 
 
-def ops(body, *overrides):
+def ops(body, *overrides, profile=None):
     """Return (name, arguments...) of each op of a script, without step marks and the halt."""
-    rows = [row[1:] for row in disassemble(compiled(body, *overrides).code)]
+    rows = [row[1:] for row in disassemble(compiled(body, *overrides, profile=profile).code)]
     return [row for row in rows if row[0] not in ("step", "halt")]
 
 
