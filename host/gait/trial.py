@@ -198,7 +198,6 @@ class Trial:
             coil = self._all[channel]
             self._settle(channel)
             coil.settle_others(self.now_ms, self._limits)
-            coil.others_uj = max(coil.others_uj, coil.heat_uj)
             coil.heat_uj = min(coil.heat_uj, max(asked.value, 0) * 1000)
 
     def _share(self) -> None:
