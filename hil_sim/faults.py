@@ -4,12 +4,13 @@
     schedule(bench, 0, "coil-open:B10m1")
 
 `coil-open` and `coil-whole` break and mend the wire of one coil, named after a colon. `battery-empty` leaves in a
-battery on board what its protection ends at once.
+battery on board what its protection ends at once. `imu-stuck` has the attitude sensor give its last sample for ever.
 """
 
 from collections.abc import Callable
 
 from hil_sim.bench import Bench
+from hil_sim.devices.lsm6ds3tr import Lsm6ds3tr
 from hil_sim.journal import FAULT
 from hil_sim.robotcheck import near
 
@@ -54,6 +55,26 @@ def _battery_empty(bench: Bench) -> None:
         bench.supply.battery.charge = 0.0
 
 
+def _imu(change: Callable[[Lsm6ds3tr], None]) -> Callable[[Bench], None]:
+    def happen(bench: Bench) -> None:
+        if bench.board.imu is not None:
+            change(bench.board.imu)
+
+    return happen
+
+
+def _imu_stuck(imu: Lsm6ds3tr) -> None:
+    imu.stuck = True
+
+
+def _imu_dead(imu: Lsm6ds3tr) -> None:
+    imu.alive = False
+
+
+def _imu_whole(imu: Lsm6ds3tr) -> None:
+    imu.alive, imu.stuck = True, False
+
+
 FAULTS: dict[str, Callable[[Bench], None]] = {
     "cable-cut": _cut,
     "cable-join": _join,
@@ -71,6 +92,10 @@ FAULTS: dict[str, Callable[[Bench], None]] = {
     "bus-stuck": _bus(True),
     "bus-free": _bus(False),
     "battery-empty": _battery_empty,
+    "imu-dead": _imu(_imu_dead),
+    "imu-stuck": _imu(_imu_stuck),
+    "imu-forgets": _imu(Lsm6ds3tr.reset),
+    "imu-whole": _imu(_imu_whole),
 }
 OF_A_COIL: dict[str, Callable[[Bench, str], None]] = {
     "coil-open": lambda bench, label: bench.break_coil(label),
@@ -90,6 +115,8 @@ def schedule(bench: Bench, at_us: int, name: str) -> None:
 def _fault(bench: Bench, name: str) -> Callable[[Bench], None]:
     if name == "battery-empty" and bench.supply.battery is None:
         raise ValueError("fault battery-empty: this robot has no battery")
+    if name.startswith("imu-") and bench.board.imu is None:
+        raise ValueError(f"fault {name}: this robot has no attitude sensor")
     if name in FAULTS:
         return FAULTS[name]
     kind, _, label = name.partition(":")
