@@ -72,6 +72,16 @@ def test_json_is_one_object_on_one_line(softrig, line):
     assert json.loads(told.out)["limits"]["heat_budget_mj"] == LIMITS["heat_budget_mj"]
 
 
+def test_status_tells_how_a_robot_lies_that_knows(softrig, line, peer):
+    assert "attitude" not in softrig("status").out
+    assert json.loads(softrig("status", "--json").out)["down"] is None
+
+    peer.attitude = {"roll_decideg": -15, "pitch_decideg": 452, "down": 3}
+
+    assert "  attitude    D down, pitch 45.2 deg, roll -1.5 deg\n" in softrig("status").out
+    assert json.loads(softrig("status", "--json").out)["pitch_deg"] == 45.2
+
+
 def test_status_asks_the_robot(softrig, line):
     fields = json.loads(softrig("status", "--json").out)
 

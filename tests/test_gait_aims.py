@@ -208,5 +208,13 @@ def test_a_chosen_coil_may_be_one_that_must_rest():
     assert sound(AIM + long + "fire $next at 1 % for 1 s") == ["E312"]
 
 
+def test_two_coils_that_are_chosen_may_be_on_together_the_same_one_only_in_turn():
+    lets = "let a = roll[down]\nlet b = roll[down + 4]\n"
+    both = CIRCLE + lets + "together:\n    fire $a at 5 % for 1 s\n    fire ${} at 5 % for 1 s"
+
+    assert report(both.format("b"), ball_robot()).at_once == 2
+    assert ("E135", 6, 5) in wrong(both.format("a"))
+
+
 def test_the_circle_of_the_tests_is_the_rolling_circle():
     assert CIRCLE.split()[3:] == BALL

@@ -74,7 +74,7 @@ def _report_conflicts(events: Iterable[tuple[int, int, Fire]], problems: Problem
     for at_ms, child, fire in events:
         busy = [entry for entry in busy if entry[0] > at_ms]
         for _, other, order in busy:
-            if other != child and order.mask & fire.mask:
+            if other != child and order.kept == fire.kept and order.mask & fire.mask:
                 help = f"the other order is on line {order.node.place.line}"
                 problems.add(fire.node.place, "E135", "a coil of this order is on already", help)
         busy.append((at_ms + fire.time_ms, child, fire))
