@@ -5,8 +5,9 @@ r"""The core inside the hoops: a ball that the strips push off when it comes nea
 
 with the place p of an element's strip that is nearest to the centre of the ball: s along the chord from 0 to 1, c
 across, at most half the width either way. No friction, no thickness. Of the derivative the part along the push is
-taken, J^T k_n J, which is exact but for the turning of the push. Without this contact a jump could store energy in
-shapes that cannot be. Derived here; checked in tests/test_physics_net_contact.py.
+taken, J^T k_n J, exact but for the turning of the push; for a node that has no coil to the core, and so no block with
+it, a bound of it on the diagonals. Without this contact a jump could store energy in shapes that cannot be. Derived
+here; checked in tests/test_physics_net_contact.py.
 """
 
 import numpy as np
@@ -81,14 +82,20 @@ def core_tangent(net: Net, near: Array, blocks: Array) -> None:
         if near[k, PUSH] <= 0.0:
             continue
         a, b, s = net.ends[k, 0], net.ends[k, 1], near[k, SHARE]
-        for p in range(6):
-            for q in range(6):
-                both = net.k_n * near[k, UNIT + p] * near[k, UNIT + q]
-                blocks[net.pattern.diagonal[a], p, q] += (1.0 - s) * (1.0 - s) * both
-                blocks[net.pattern.diagonal[b], p, q] += s * s * both
-                blocks[net.beams[k], p, q] += s * (1.0 - s) * both
-                if p < 3:
-                    blocks[net.to_core[a], p, q] -= (1.0 - s) * both
-                    blocks[net.to_core[b], p, q] -= s * both
-                    if q < 3:
-                        blocks[core, p, q] += both
+        add(near, k, net.k_n, blocks, core, 3, 3)
+        add(near, k, net.k_n * s * (1.0 - s), blocks, net.beams[k], 6, 6)
+        for body, share in ((a, 1.0 - s), (b, s)):
+            add(near, k, net.k_n * share * share, blocks, net.pattern.diagonal[body], 6, 6)
+            if net.to_core[body] >= 0:
+                add(near, k, -net.k_n * share, blocks, net.to_core[body], 3, 6)
+            else:
+                add(near, k, net.k_n * share, blocks, core, 3, 3)
+                add(near, k, net.k_n * share, blocks, net.pattern.diagonal[body], 6, 6)
+
+
+@kernel
+def add(near: Array, k: int, stiffness: float, blocks: Array, block: int, rows: int, columns: int) -> None:
+    """Add stiffness times J J^T of push k to the first rows and columns of a block."""
+    for p in range(rows):
+        for q in range(columns):
+            blocks[block, p, q] += stiffness * near[k, UNIT + p] * near[k, UNIT + q]

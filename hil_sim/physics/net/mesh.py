@@ -59,7 +59,7 @@ class Net(NamedTuple):
     coil_damping: float  # [N s/m]
     core_radius: float  # [m]
     width: float  # of the strips [m]
-    to_core: Ints  # slot of the block of each node, columns, with the core, rows (B - 1,)
+    to_core: Ints  # slot of the block of each node, columns, with the core, rows; -1 where there is none (B - 1,)
     hoops: Ints  # bodies in order round each hoop (H, N)
     directions: Array  # of the nodes from the centre of the round body (B - 1, 3) [1]
     pattern: Pattern
@@ -81,7 +81,7 @@ def net_of(
     count, core = len(directions), len(directions)
     near, far, arms = _coils(directions, core, p.attach, spokes, chords)
     first, second, axes = _elements(hoops, circles, directions)
-    couples = [*zip(first, second, strict=True), *zip(near, far, strict=True), *((node, core) for node in range(core))]
+    couples = [*zip(first, second, strict=True), *zip(near, far, strict=True)]
     pattern = pattern_of(count + 1, sorted({(int(min(pair)), int(max(pair))) for pair in couples}))
     ends, beams = _ordered(pattern, first, second, axes)
     found = [slot(pattern, a, b) for a, b in zip(near.tolist(), far.tolist(), strict=True)]
@@ -94,7 +94,7 @@ def net_of(
         feet, offsets, ground.k_n, ground.c_n, ground.mu,
         near, far, arms, np.array([place for place, _ in found], dtype=np.int64),
         np.array([int(later) for _, later in found], dtype=np.int64),
-        p.damping, p.r_core, p.width, _to_core(pattern), hoops, directions, pattern,
+        p.damping, p.r_core, p.width, _to_core(pattern, near, far), hoops, directions, pattern,
     )  # fmt: skip
 
 
@@ -137,10 +137,14 @@ def _ordered(pattern: Pattern, first: Ints, second: Ints, axes: Array) -> tuple[
     return ends, np.array([slot(pattern, int(a), int(b))[0] for a, b in ends], dtype=np.int64)
 
 
-def _to_core(pattern: Pattern) -> Ints:
-    """Return the slots of the blocks between the nodes and the core, which is coupled to all and eliminated last."""
+def _to_core(pattern: Pattern, near: Ints, far: Ints) -> Ints:
+    """Return the slot of the block of each node with the core that has the core's rows, -1 where there is none."""
     core = pattern.place.size - 1
-    return np.array([slot(pattern, core, node)[0] for node in range(core)], dtype=np.int64)
+    slots = np.full(core, -1, dtype=np.int64)
+    for node in far[near == core].tolist():
+        place, last = slot(pattern, core, node)
+        slots[node] = place if last else -1
+    return slots
 
 
 def _coils(
