@@ -42,12 +42,12 @@ class Weaver:
         self.angle, self.steps = 2 * np.pi / nodes, nodes // 4
         self.arm = numbers.R * np.tan(self.angle / 2)  # from a node to its hinges
         self.link = numbers.m / 3 / nodes  # mass of a link [kg]
-        self.rest = {"-z": (numbers.R * AXES["-z"], np.eye(3))}  # place and axes of a body in the round sphere
+        self.rest = {"-z": self.node(AXES["-z"], AXES["+x"], 0)}  # place and axes of a body in the round sphere
 
     def weave(self, tree: Arcs, cut: Arcs) -> mujoco.MjSpec:
         """Lay all arcs and return the specification."""
         crossing = 2 * self.link + self.numbers.m_joints / 6
-        root = self.spec.worldbody.add_body(name="-z", pos=self.rest["-z"][0])
+        root = self.spec.worldbody.add_body(name="-z", pos=self.rest["-z"][0], quat=turn(self.rest["-z"][1]))
         root.add_freejoint()
         self.load(root, crossing)
         for start, end in tree:
@@ -77,9 +77,7 @@ class Weaver:
     def seen_from(self, parent: str, child: str) -> dict[str, np.ndarray]:
         """Return place and quaternion of one body in the axes of another."""
         (p, a), (q, b) = self.rest[parent], self.rest[child]
-        quat = np.zeros(4)
-        mujoco.mju_mat2Quat(quat, (a.T @ b).ravel())
-        return {"pos": a.T @ (q - p), "quat": quat}
+        return {"pos": a.T @ (q - p), "quat": turn(a.T @ b)}
 
     def hinge(self, body: "mujoco.MjsBody") -> None:
         """Hinge a link to the one before, with axes midway between the two."""
@@ -99,11 +97,14 @@ class Weaver:
         return [k / (self.numbers.R * self.angle), 0, 0]
 
     def load(self, body: "mujoco.MjsBody", kilograms: float) -> None:
-        """Give a body mass and the moments of inertia of a strip as long as a link, and a toe at its node."""
+        """Give a body mass and the moments of inertia of a strip as long as a link, and toes on its edges."""
         along, across = kilograms * self.arm**2 / 3, kilograms * self.numbers.width**2 / 12
         body.mass, body.inertia, body.explicitinertial = kilograms, [across, along + across, along], True
         body.ipos, body.iquat = [0, 0, 0], [1, 0, 0, 0]  # unset, they would be the place of the body itself
-        body.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[TOE, 0, 0], contype=1, conaffinity=0)
+        edge = self.numbers.width / 2
+        sides = [(0, 0, edge), (0, 0, -edge), (edge, 0, 0), (-edge, 0, 0)][: 4 if kilograms > self.link else 2]
+        for side in sides:  # a crossing has the edges of both hoops
+            body.add_geom(type=mujoco.mjtGeom.mjGEOM_SPHERE, size=[TOE, 0, 0], pos=side, contype=1, conaffinity=0)
 
     def tie(self, one: str, other: str) -> None:
         """Weld two bodies as they lie now."""
@@ -113,3 +114,10 @@ class Weaver:
         weld.data[1] = 0.0  # of the anchor: unset, it would be 1 m away
         weld.data[10] = 1.0  # its rotation is as stiff as MuJoCo means it only where a radian counts as a metre
         weld.solimp = STIFF
+
+
+def turn(axes: np.ndarray) -> np.ndarray:
+    """Return the quaternion of these axes."""
+    quat = np.zeros(4)
+    mujoco.mju_mat2Quat(quat, axes.ravel())
+    return quat
