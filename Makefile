@@ -1,7 +1,7 @@
 # Everything runs from .venv, which `setup` makes. PYTHON=python3.12 picks the interpreter, TESTS=tests/test_x.py the tests.
 SHELL := /bin/sh
 .DEFAULT_GOAL := help
-.PHONY: help setup test check demo docs bench clean
+.PHONY: help setup test check demo docs sensitivity bench clean
 
 AT_LEAST := import sys; sys.exit(sys.version_info < (3, 11))
 PYTHON ?= $(shell for name in python3 python3.14 python3.13 python3.12 python3.11; do \
@@ -18,6 +18,7 @@ help:
 	@echo "make check   ruff, mypy --strict, MicroPython syntax of the image, generated pages fresh"
 	@echo "make demo    let the circular robot crawl on the bench: report and picture"
 	@echo "make docs    write the generated pages and pictures of docs/ again"
+	@echo "make sensitivity   measure docs/sensitivity.md again, some ten minutes"
 	@echo "make bench   run the benchmarks"
 	@echo "make clean   remove .venv, caches and out/"
 
@@ -58,6 +59,9 @@ docs: $(READY)
 	$(BIN)/python docs/generate.py
 	$(BIN)/softrig run gaits/circular-crawl.gait --robot sim:circular --plot docs/crawl.svg >/dev/null
 	$(BIN)/softrig figure 3 -o docs/poses.svg
+
+sensitivity: $(READY)
+	$(BIN)/python docs/sensitivity.py
 
 bench: $(READY)
 	@for file in benchmarks/*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done

@@ -55,3 +55,25 @@ def test_without_the_lower_coils_that_hold_the_bottom_inverted_there_is_no_jump(
     jump(plant, without=(1, 7))
 
     assert plant.observe()["clearance_mm"] < 10
+
+
+def test_the_highest_flight_is_kept_with_the_energy_that_was_let_go_for_it():
+    """A jump is ballistic but for the air; what is released comes out of what is stored and is more than what lifts."""
+    plant = new_plant(hub__radius_mm=3.5)
+
+    jump(plant)
+
+    seen = plant.observe()["jump"]
+    lifted_mj = 1.8e-3 * 9.81 * seen["apex_mm"]
+    assert seen["apex_mm"] == pytest.approx(1e3 * seen["takeoff_m_per_s"] ** 2 / (2 * 9.81), abs=5)
+    assert seen["stored_mj"] > seen["released_mj"] > lifted_mj
+    assert 0 < seen["losses_mj"] < seen["released_mj"]
+    assert 4.0 < seen["takeoff_s"] < 6.0
+
+
+def test_a_robot_that_rests_has_no_flight():
+    plant = new_plant()
+
+    plant.advance(GRID_US, powers(plant, [0.0] * 8))
+
+    assert plant.observe()["jump"] is None

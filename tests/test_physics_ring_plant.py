@@ -134,3 +134,14 @@ def test_the_rise_is_counted_from_the_standing_height_and_a_crawl_has_none():
 
     assert plant.observe()["apex_mm"] == pytest.approx(0.0, abs=0.05)
     assert plant.observe()["clearance_mm"] == 0.0
+
+
+def test_a_picture_is_told_the_ground_and_the_energies():
+    plane, kerb = new_plant(), new_plant(ground__step_mm=2, ground__step_at_mm=60)
+
+    assert plane.snapshot()["terrain_mm"] == []
+    assert kerb.snapshot()["terrain_mm"][2:4] == [[60.0, 0.0], [60.0, 2.0]]
+    energy = plane.snapshot()["energy_j"]
+    assert energy["kinetic"] == 0.0
+    assert energy["gravity"] == pytest.approx(1.8e-3 * 9.81 * 0.019, rel=0.05)
+    assert 0.0 < energy["elastic"] < 1e-4
