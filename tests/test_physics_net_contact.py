@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hil_sim.physics.net.apart import THICKNESS, list_close, nearest, none_close, strip_forces
 from hil_sim.physics.net.beam import beam_forces
 from hil_sim.physics.net.flight import APEX, BEST, E_0, E_1, V_1, follow, no_flight
 from hil_sim.physics.net.gauge import centre
@@ -130,3 +131,39 @@ def test_a_flight_is_recorded_from_its_take_off_to_its_apex():
     assert best[E_1] < 2e-3
     assert best[V_1] == pytest.approx(1.0, abs=0.05)
     assert flight[APEX] == pytest.approx(0.2 + 1.0 / (2 * 9.81), abs=1e-3)
+
+
+def test_two_strips_that_are_pulled_together_do_not_pass_through():
+    """The poles would meet in the middle and go on, had they no thickness."""
+    poles = [(0, 0, 1), (0, 0, -1)]
+    net = net_of(
+        replace(NUMBERS, EI=4.5e-6, tau_v=3e-4, drag=20.0, r_core=1e-4), GROUND, SPHERE, [(1, 0, 0)], [tuple(poles)]
+    )
+    sample = placed(net, height=1.0)
+    m, nodes = sample.m, [node_at(net.directions, pole) for pole in poles]
+    m.now.x[-1] += [0.02, 0.02, 0.02]  # the core is out of the way
+    m.coils[SOFT], m.coils[FREE] = [0.0, 0.2], [0.0, -1.0]
+    started(sample)
+    gaps, flight = [], no_flight()
+    for _ in range(40):
+        march(net, PLANE, (0.0, 0.0), method_of(0.5, 4.5e-6), m, flight, 5e-3)
+        gaps.append(m.now.x[nodes[0], 2] - m.now.x[nodes[1], 2])
+
+    assert min(gaps) < 1.5 * THICKNESS
+    assert min(gaps) > 0.0
+
+
+def test_strips_push_each_other_with_opposite_forces():
+    sample = placed(sphere(), height=0.0)
+    net, m = sample
+    m.now.x[:, 2] *= 0.005
+    m.now.x[:, 0] += 0.3 * m.now.x[:, 2]
+    f, close = np.zeros((net.bodies, 6)), none_close()
+
+    list_close(net, m.now.x, m.now.v, 0.0, close)
+    strip_forces(net, m.now.x, close, f)
+
+    assert close[0, 0] > 0
+    assert nearest(net, m.now.x) < THICKNESS
+    assert np.abs(f).max() > 0.1
+    assert f.sum(axis=0) == pytest.approx(np.zeros(6), abs=1e-12)

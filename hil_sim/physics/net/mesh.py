@@ -60,6 +60,7 @@ class Net(NamedTuple):
     core_radius: float  # [m]
     width: float  # of the strips [m]
     to_core: Ints  # slot of the block of each node, columns, with the core, rows; -1 where there is none (B - 1,)
+    strangers: Ints  # pairs of elements that are far from each other in the round body (C, 2)
     hoops: Ints  # bodies in order round each hoop (H, N)
     directions: Array  # of the nodes from the centre of the round body (B - 1, 3) [1]
     pattern: Pattern
@@ -94,7 +95,8 @@ def net_of(
         feet, offsets, ground.k_n, ground.c_n, ground.mu,
         near, far, arms, np.array([place for place, _ in found], dtype=np.int64),
         np.array([int(later) for _, later in found], dtype=np.int64),
-        p.damping, p.r_core, p.width, _to_core(pattern, near, far), hoops, directions, pattern,
+        p.damping, p.r_core, p.width, _to_core(pattern, near, far), _strangers(ends, directions),
+        hoops, directions, pattern,
     )  # fmt: skip
 
 
@@ -145,6 +147,15 @@ def _to_core(pattern: Pattern, near: Ints, far: Ints) -> Ints:
         place, last = slot(pattern, core, node)
         slots[node] = place if last else -1
     return slots
+
+
+def _strangers(ends: Ints, directions: Array) -> Ints:
+    """Return the pairs of elements whose middles are farther apart in the round body than four elements are long."""
+    middles = 0.5 * (directions[ends[:, 0]] + directions[ends[:, 1]])
+    length = np.linalg.norm(directions[ends[0, 0]] - directions[ends[0, 1]])
+    first, second = np.triu_indices(len(ends), 1)
+    apart = np.linalg.norm(middles[first] - middles[second], axis=1) > 4.0 * length
+    return np.stack([first[apart], second[apart]], axis=1)
 
 
 def _coils(

@@ -18,6 +18,7 @@ repeatability: tests/test_physics_net_motion.py.
 import numpy as np
 
 from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.net.apart import list_close, strip_forces, strip_tangent
 from hil_sim.physics.net.beam import beam_forces, beam_tangent
 from hil_sim.physics.net.factor import factor, solve
 from hil_sim.physics.net.flight import follow
@@ -76,6 +77,7 @@ def forces(net: Net, terrain: Terrain, g: tuple[float, float], m: Motion, s: Sta
             s.f[b, 3 + p] += net.inertia[b] * net.drag * s.v[b, 3 + p]
         s.f[b, 0] -= net.mass[b] * g[0]
         s.f[b, 2] -= net.mass[b] * g[1]
+    strip_forces(net, s.x, m.close, s.f)
     return core_forces(net, s.x, m.work, m.near, s.f), energy, loss
 
 
@@ -102,6 +104,7 @@ def correct(net: Net, m: Motion, cv: float, ca: float, near: bool) -> bool:
     beam_tangent(net, cv, m.work, m.blocks)
     coil_tangent(net, cv, m.coils, m.blocks)
     ground_tangent(net, m.new.x, cv, m.touch, m.blocks)
+    strip_tangent(net, m.new.x, m.close, m.blocks)
     if near:
         core_tangent(net, m.near, m.blocks)
     if not factor(net.pattern, m.blocks):
@@ -149,6 +152,7 @@ def attempt(net: Net, terrain: Terrain, g: tuple[float, float], method: Method, 
     for b in range(net.bodies):
         for p in range(6):
             m.change[b, p] = h * m.now.v[b, p] + 0.5 * h * h * m.now.a[b, p]
+    list_close(net, m.now.x, m.now.v, h, m.close)
     enough = max(RESIDUAL, method.share * method.tolerance * ca * net.mass[0])
     before, cuts = np.inf, 0
     for _ in range(ITERATIONS_MAX):

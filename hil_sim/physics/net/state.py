@@ -5,10 +5,11 @@ from typing import NamedTuple
 import numpy as np
 
 from hil_sim.physics.compiled import Array
+from hil_sim.physics.net.apart import none_close
 from hil_sim.physics.net.beam import WORK_COLUMNS
 from hil_sim.physics.net.ground import TOUCH_COLUMNS
 from hil_sim.physics.net.inside import NEAR_COLUMNS
-from hil_sim.physics.net.mesh import Net
+from hil_sim.physics.net.mesh import Ints, Net
 from hil_sim.physics.net.pulls import COIL_ROWS
 
 # Entries of `tally`: time and next step [s], counts; work of coils, ground and tilting, losses [J] and their rates [W];
@@ -41,6 +42,7 @@ class Motion(NamedTuple):
     tally: Array
     work: Array  # (E, WORK_COLUMNS)
     near: Array  # (E, NEAR_COLUMNS)
+    close: Ints  # pairs of elements that may touch, see `apart`
     blocks: Array  # (slots, 6, 6)
     rhs: Array  # (B, 6)
     correction: Array  # (B, 6)
@@ -64,6 +66,6 @@ def motion_of(net: Net, x: Array, R: Array) -> Motion:
     return Motion(
         now, state_of(count), np.zeros((count, 6)), np.zeros((points, TOUCH_COLUMNS)),
         np.zeros((COIL_ROWS, net.near.size)), tally,
-        np.zeros((net.beams.size, WORK_COLUMNS)), np.zeros((net.beams.size, NEAR_COLUMNS)),
+        np.zeros((net.beams.size, WORK_COLUMNS)), np.zeros((net.beams.size, NEAR_COLUMNS)), none_close(),
         np.zeros((net.pattern.slots, 6, 6)), np.zeros((count, 6)), np.zeros((count, 6)), np.stack([R, R]),
     )  # fmt: skip
