@@ -154,7 +154,8 @@ HEAD = """\
 How the headline figures change with numbers that were assumed, and with the numerics. One number is changed at a time;
 everything else is as in the robot files, where each number says how it is known. All layers take part: script, wire,
 firmware, chips, coils, body, ground. Fitted is the bending stiffness of each robot, to crawl and jump with the coils
-within their limits; nothing else is. *Fails*: the script was ended by a limit, or no slope is climbed.
+within their limits; the times in the jump scripts were searched for. *Fails*: the script was ended by a limit, or no
+slope is climbed.
 """
 
 
@@ -199,7 +200,7 @@ def begin_terrain(pool: ProcessPoolExecutor, figure: Figure) -> Callable[[], str
 
     def finish() -> str:
         level = plane.result()
-        lines = [f"## {figure.robot}: steps and rough ground", f"`gaits/{figure.script}`, places or seeds crossed.\n"]
+        lines = [f"## {figure.robot}: steps and rough ground, {figure.script}", "Of the places or seeds tried.\n"]
         lines += ["| ground | crossed |", "| --- | --- |"]
         for what, runs in rows:
             crossed = [crosses(each.result(), level) for each in runs]

@@ -17,10 +17,10 @@ PLACES_MM = (52, 56, 60, 64)  # of the edge of a step, over an eighth of the rim
 
 @cache
 def observed(**ground):
-    """Run the crawl on such ground and return what was observed."""
-    seed = ground.pop("seed", 1)
+    """Run the crawl, or another gait, on such ground and return what was observed."""
+    seed, gait = ground.pop("seed", 1), ground.pop("gait", "crawl")
     settings = "".join(f"&set=ground.{key}:{value}" for key, value in ground.items())
-    arguments = ["run", "gaits/circular-crawl.gait", "--robot", f"sim:circular?seed={seed}{settings}", "--json"]
+    arguments = ["run", f"gaits/circular-{gait}.gait", "--robot", f"sim:circular?seed={seed}{settings}", "--json"]
     result = CliRunner().invoke(main, arguments)
     assert result.exit_code == 0, result.output
     return json.loads(result.stdout)["observed"]
@@ -38,6 +38,21 @@ def test_it_climbs_a_step_of_a_millimetre(place_mm):
 def test_a_step_of_three_millimetres_stops_it(place_mm):
     """It leans on the edge with its weight behind it, and that turns it back."""
     assert observed(step_mm=3, step_at_mm=place_mm)["travel_mm"] < place_mm
+
+
+@pytest.mark.parametrize("place_mm", PLACES_MM)
+def test_a_coil_and_its_opposite_take_it_up_a_step_of_a_quarter_of_its_radius(place_mm):
+    seen = observed(gait="climb", step_mm=5, step_at_mm=place_mm)
+
+    assert seen["travel_mm"] == pytest.approx(CRAWL_MM, rel=0.05)
+    assert seen["rim_crossings"] == 0
+
+
+@pytest.mark.parametrize("seed", range(1, 4))
+def test_a_coil_and_its_opposite_take_it_over_hills_of_two_millimetres(seed):
+    seen = observed(gait="climb", roughness_mm=2, roughness_length_mm=5, seed=seed)
+
+    assert seen["travel_mm"] == pytest.approx(CRAWL_MM, rel=0.1)
 
 
 def test_it_crawls_down_a_step_of_eight_millimetres():
