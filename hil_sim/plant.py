@@ -44,8 +44,10 @@ from hil_sim.physics.state import (
     method_of,
     motion_of,
 )
+from hil_sim.physics.terrain import profile
 from hil_sim.robotfile import RobotFile
 
+SEEN = 10.0  # radii of the ground on either side that a snapshot shows
 SETTLING_DRAG = 20.0  # [1/s] ASSUMED: numerical, the ring is at rest within its settle_s of 1 s
 
 
@@ -63,7 +65,7 @@ class RingPlant:
         self._world = body.World(ground.gravity, ground.slope, inf, abs(ground.slope) / ground.tilt_rate)
         self._tilt_after, self._taken_hold = ground.tilt_after, False
         self._method = method_of(rho, tolerance or robot.tolerance)
-        R = numbers.R
+        R = self._radius = numbers.R
         self._motion = motion_of(self._ring, round_pose(self._ring, R, R, start.turn))
         self._motion.spokes[[LENGTH, LENGTH_BEFORE]] = R - numbers.attach
         coils = coils_of(robot.coil, count, ground.T_amb)
@@ -142,7 +144,7 @@ class RingPlant:
             "coils": coils,
             "slope_deg": slope_deg,
             "energy_j": {name.removesuffix("_j"): energy for name, energy in self._stored().items()},
-            "terrain_mm": (1e3 * np.stack(self._ring.terrain, 1)).tolist(),
+            "terrain_mm": [[1e3 * along, 1e3 * up] for along, up in profile(ring.terrain, q[-3], SEEN * self._radius)],
         }
 
     def energies(self) -> dict[str, float]:

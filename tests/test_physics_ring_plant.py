@@ -140,7 +140,9 @@ def test_a_picture_is_told_the_ground_and_the_energies():
     plane, kerb = new_plant(), new_plant(ground__step_mm=2, ground__step_at_mm=60)
 
     assert plane.snapshot()["terrain_mm"] == []
-    assert kerb.snapshot()["terrain_mm"][2:4] == [[60.0, 0.0], [60.0, 2.0]]
+    assert np.array(kerb.snapshot()["terrain_mm"]) == pytest.approx(
+        np.array([[-200, 0], [0, 0], [60, 0], [60, 2], [200, 2]]), abs=1e-6
+    )
     energy = plane.snapshot()["energy_j"]
     assert energy["kinetic"] == 0.0
     assert energy["gravity"] == pytest.approx(1.8e-3 * 9.81 * 0.019, rel=0.05)

@@ -78,6 +78,15 @@ def stepped(x: Array, z: Array, ground: GroundNumbers) -> tuple[Array, Array]:
     return np.concatenate((x[:at], [edge, edge], x[at:])), np.concatenate(heights)
 
 
+def profile(terrain: Terrain, x: float, reach: float) -> list[list[float]]:
+    """Return the vertices within that reach of a place, with an end on either side, for a picture; none on a plane."""
+    if terrain.x.size == 0:
+        return []
+    near = np.abs(terrain.x - x) < reach
+    ends = [[end, surface(terrain, end)] for end in (x - reach, x + reach)]
+    return [ends[0], *np.stack([terrain.x[near], terrain.z[near]], 1).tolist(), ends[1]]
+
+
 @lean
 def under(terrain: Terrain, x: float) -> int:
     """Return the number of the piece of the surface that lies straight under a place."""
