@@ -26,8 +26,6 @@ Direction = tuple[int, int, int]
 # The circles of a body: from the first axis towards the second. The first lies in the plane of travel.
 Circle = tuple[Direction, Direction]
 SPHERE: tuple[Circle, ...] = (((0, 0, -1), (1, 0, 0)), ((0, 0, -1), (0, 1, 0)), ((1, 0, 0), (0, 1, 0)))
-SHEAR_FACTOR = 5.0 / 6.0  # of a rectangular section (standard result)
-NU = 0.3  # ASSUMED: Poisson's ratio, only in the shear stiffness, which hardly matters
 
 
 class Net(NamedTuple):
@@ -41,6 +39,7 @@ class Net(NamedTuple):
     ends: Ints  # (E, 2)
     beams: Ints  # slot of the block between them (E,)
     axes: Array  # rows: along, flat normal and width of the strip in the round body (E, 3, 3) [1]
+    bow: Array  # turn of the arc of each in the round body, about the last of its axes (E,) [rad]
     length: float  # [m]
     stiffness: Array  # of the six strains (6,): stretch, two shears [N]; twist, edgewise, flatwise bending [N m2]
     tau_v: float  # [s]
@@ -84,14 +83,15 @@ def net_of(
     first, second, axes = _elements(hoops, circles, directions)
     couples = [*zip(first, second, strict=True), *zip(near, far, strict=True)]
     pattern = pattern_of(count + 1, sorted({(int(min(pair)), int(max(pair))) for pair in couples}))
-    ends, beams = _ordered(pattern, first, second, axes)
+    bow = np.full(len(first), 2.0 * np.pi / p.nodes)
+    ends, beams = _ordered(pattern, first, second, axes, bow)
     found = [slot(pattern, a, b) for a, b in zip(near.tolist(), far.tolist(), strict=True)]
     length = 2.0 * p.R * np.sin(np.pi / p.nodes)
     mass, inertia = _masses(p, hoops, count, length)
     feet, offsets = _feet(hoops, circles, p)
     return Net(
         count + 1, mass, inertia, p.drag,
-        ends, beams, axes, length, _stiffness(p, length), p.tau_v,
+        ends, beams, axes, bow, length, _stiffness(p, length), p.tau_v,
         feet, offsets, ground.k_n, ground.c_n, ground.mu,
         near, far, arms, np.array([place for place, _ in found], dtype=np.int64),
         np.array([int(later) for _, later in found], dtype=np.int64),
@@ -114,12 +114,10 @@ def _points(circle: Circle, nodes: int, ahead: float = 0.0) -> Array:
 
 def _nodes(circles: Sequence[Circle], nodes: int) -> tuple[Ints, Array]:
     """Return the nodes round each hoop and all directions, a crossing once."""
-    known: dict[tuple[float, ...], int] = {}
-    hoops = [
-        [known.setdefault(tuple(np.round(point, 9) + 0.0), len(known)) for point in _points(circle, nodes)]
-        for circle in circles
-    ]
-    return np.array(hoops, dtype=np.int64), np.array(list(known))
+    points = np.concatenate([_points(circle, nodes) for circle in circles])
+    _, first, same = np.unique(np.round(points, 9) + 0.0, axis=0, return_index=True, return_inverse=True)
+    kept = np.sort(first)
+    return np.searchsorted(kept, first[same.ravel()]).reshape(len(circles), nodes), points[kept]
 
 
 def _elements(hoops: Ints, circles: Sequence[Circle], directions: Array) -> tuple[Ints, Ints, Array]:
@@ -131,10 +129,11 @@ def _elements(hoops: Ints, circles: Sequence[Circle], directions: Array) -> tupl
     return first, second, np.stack([along, np.cross(width, along), width], axis=1)
 
 
-def _ordered(pattern: Pattern, first: Ints, second: Ints, axes: Array) -> tuple[Ints, Ints]:
-    """Return the ends of the elements, the earlier eliminated first, and their slots; turn their axes with them."""
+def _ordered(pattern: Pattern, first: Ints, second: Ints, axes: Array, bow: Array) -> tuple[Ints, Ints]:
+    """Return the ends of the elements, the earlier eliminated first, and their slots; turn axes and arcs with them."""
     swap = pattern.place[first] > pattern.place[second]
     axes[swap, :2] *= -1.0
+    bow[swap] *= -1.0
     ends = np.stack([np.where(swap, second, first), np.where(swap, first, second)], axis=1)
     return ends, np.array([slot(pattern, int(a), int(b))[0] for a, b in ends], dtype=np.int64)
 
@@ -199,14 +198,11 @@ def _masses(p: SphereNumbers, hoops: Ints, count: int, length: float) -> tuple[A
 def _stiffness(p: SphereNumbers, length: float) -> Array:
     r"""Return the stiffness of the six strains.
 
-    The shears carry MacNeal's residual bending flexibility, 1/GA* = 1/GA + l^2/(12 EI): it makes a two-node element
-    with one point of integration bend as the cubic beam does (standard result).
+    The shears are MacNeal's residual bending flexibility alone, 1/GA* = l^2/(12 EI): it makes a two-node element with
+    one point of integration bend as the cubic beam does (standard result); a thin strip hardly shears beyond that.
     """
-    GA = SHEAR_FACTOR * p.EA / (2.0 * (1.0 + NU))
     flat, edge = p.EI, p.EI * p.edgewise
-    across = 1.0 / (1.0 / GA + length**2 / (12.0 * flat))
-    sideways = 1.0 / (1.0 / GA + length**2 / (12.0 * edge))
-    return np.array([p.EA, across, sideways, p.EI * p.twist, edge, flat])
+    return np.array([p.EA, 12.0 * flat / length**2, 12.0 * edge / length**2, p.EI * p.twist, edge, flat])
 
 
 def _feet(hoops: Ints, circles: Sequence[Circle], p: SphereNumbers) -> tuple[Ints, Array]:
