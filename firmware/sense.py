@@ -122,9 +122,9 @@ class Sense:
         coil = self._coil
         martensite = self._martensite_permille[channel]
         if energy_nj > 0 and coil.as_millidegc <= t < coil.af_millidegc and martensite >= self._most_permille(t):
-            return coil.latent_uj * 1000 // (coil.af_millidegc - coil.as_millidegc)
+            return coil.latent_uj * 10 // ((coil.af_millidegc - coil.as_millidegc) // 100)  # below 2**30
         if energy_nj < 0 and coil.mf_millidegc < t <= coil.ms_millidegc and martensite < 1000:
-            return coil.latent_uj * 1000 // (coil.ms_millidegc - coil.mf_millidegc)
+            return coil.latent_uj * 10 // ((coil.ms_millidegc - coil.mf_millidegc) // 100)
         return 0
 
     def _most_permille(self, t: int) -> int:

@@ -23,11 +23,11 @@ def test_a_battery_near_its_end_heats_a_coil_less(rig_of):
     peaks = []
     for charge in (25, 3):
         rig = rig_of(f"sim:sphere-a?set=battery.charge_percent:{charge}")
-        rig.fire("A00m1", duty_percent=100, hold_s=0.55)
+        rig.fire("A00m1", duty_percent=100, hold_s=0.6)
         rig.run(seconds=1)
         peaks.append(rig.bench.coil("A00m1").peak_degc)
 
-    assert peaks[1] < peaks[0] - 15
+    assert peaks[1] < peaks[0] - 10
 
 
 def test_a_battery_that_sags_below_its_limit_is_a_fault_and_the_coil_goes_off(rig_of):
@@ -56,17 +56,17 @@ def test_a_battery_that_dies_silences_the_robot_and_its_coil_is_off(rig_of):
     assert rig.bench.crashes == []
 
 
-def test_four_coils_make_a_battery_sag_and_hardly_a_bench_supply(rig_of):
+def test_two_coils_make_a_battery_sag_and_hardly_a_bench_supply(rig_of):
     sagged_v = {}
     for name in ("sphere-a", "sphere-b"):
         rig = rig_of(f"sim:{name}")
         before_v = rig.bench.supply.steady_v()[1]
-        rig.fire("A100", "Am100", "A010", "A0m10", duty_percent=100, hold_s=0.3)
+        rig.fire("A100", "Am100", duty_percent=100, hold_s=0.3)
         rig.run(seconds=0.1)
         sagged_v[name] = before_v - rig.bench.supply.steady_v()[1]
 
-    assert 0.4 < sagged_v["sphere-a"] < 0.5  # 0.9 A through 0.52 ohm
-    assert 0.01 < sagged_v["sphere-b"] < 0.02  # through 0.02 ohm
+    assert 0.75 < sagged_v["sphere-a"] < 0.85  # 1.5 A through 0.52 ohm
+    assert 0.005 < sagged_v["sphere-b"] < 0.01  # 0.4 A through 0.02 ohm
 
 
 def test_an_open_jump_coil_stays_cold_and_the_others_do_not_care(rig_of):

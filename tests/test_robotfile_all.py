@@ -117,7 +117,7 @@ def test_the_firmware_reckons_with_its_numbers_without_taking_memory(profile):
         "leak": coil["heat_budget_mj"] * 1000 * turn_ms,
         "loss": (coil["trip_degc"] + 40) * 10 * coil["loss_uw_per_k"],
         "lost": (coil["trip_degc"] + 40) * coil["loss_uw_per_k"] * turn_ms,
-        "latent": coil["latent_uj"] * 1000,
+        "latent": coil["latent_uj"] * 10,
     }
 
     assert {name: value for name, value in products.items() if value > SMALL_INT_MAX} == {}
