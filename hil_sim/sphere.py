@@ -59,7 +59,7 @@ class SpherePlant:
     def __init__(self, robot: RobotFile, seed: int = 0, rho: float = 0.5, tolerance: float | None = None) -> None:
         assert robot.sphere is not None
         assert isinstance(robot.start, Attitude)
-        prepare(body.advance)
+        prepare(body.advance, coil.advance)
         ground, count, numbers = robot.ground, len(robot.labels), robot.sphere
         self.labels = list(robot.labels)
         spokes = [direction(label) for label in self.labels[: count - len(robot.jumps)]]
@@ -114,7 +114,7 @@ class SpherePlant:
 
     def attitude(self) -> tuple[float, float, float, float]:
         """Return the unit quaternion (w, x, y, z) that turns the round body's axes into those of the bench."""
-        return quaternion(self._motion.attitude[0])
+        return quaternion(self._motion.attitude)
 
     def angular_rate(self) -> Array:
         """Return the spin of the core in its own axes [rad/s]."""
@@ -229,7 +229,7 @@ class SpherePlant:
 
     def _down(self) -> str:
         """Return the label of the coil from the core whose direction is nearest to down."""
-        down = -self._motion.attitude[0][2]
+        down = -self._motion.attitude[2]
         return max(self._compass, key=lambda label: float(self._compass[label] @ down))
 
     def _jump(self) -> dict[str, float] | None:

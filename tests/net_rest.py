@@ -26,7 +26,7 @@ class NetRest:
         self.net, self.terrain = net_of(light, ground, SPHERE, [], [(BOTTOM, TOP)]), terrain_of(ground, 0)
         places = np.vstack([numbers.R * self.net.directions, np.zeros((1, 3))])
         places[:, 2] += 1.0
-        self.motion = motion_of(self.net, places, np.tile(np.eye(3), (self.net.bodies, 1, 1)))
+        self.motion = motion_of(self.net, places, np.eye(3))
 
     def settle(self, pull: float) -> float:
         """Go to rest under a pull [N] from where it is, and return the distance of the poles [m]."""

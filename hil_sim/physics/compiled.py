@@ -32,24 +32,26 @@ def lean(function: Kernel) -> Kernel:
     return cast(Kernel, njit(cache=True, fastmath=REORDERED, error_model="numpy", **bare)(function))
 
 
-def prepare(entry: Any) -> bool:
+def prepare(entry: Any, *others: Any) -> bool:
     """Drop stale machine code and return whether `entry`, the outermost kernel, must be compiled now.
 
-    Prints one line on stderr when it must: the first run is some twenty seconds slower than the next.
+    The others are kernels of the other folders whose code it uses. Prints one line on stderr when it must: the first
+    run is a minute slower than the next.
     """
     if entry.signatures:
         return False
-    sources = list(Path(__file__).parent.rglob("*.py"))
-    newest = max(_written_s(source) for source in sources)
-    indexes = list(Path(entry.stats.cache_path).glob("*.nbi"))
+    newest = max(_written_s(source) for source in Path(__file__).parent.rglob("*.py"))
+    folders = [Path(each.stats.cache_path) for each in (entry, *others)]
+    indexes = [index for folder in folders for index in folder.glob("*.nbi")]
     fresh = [index for index in indexes if _written_s(index) >= newest]
     if len(fresh) < len(indexes):
         for index in indexes:
             index.unlink(missing_ok=True)
         fresh = []
-    cold = not any(index.name.startswith(Path(entry.py_func.__code__.co_filename).stem) for index in fresh)
+    stem = Path(entry.py_func.__code__.co_filename).stem
+    cold = not any(index.parent == folders[0] and index.name.startswith(stem) for index in fresh)
     if cold:
-        print("softrig: compiling the physics kernels, once (about 20 s) ...", file=sys.stderr, flush=True)
+        print("softrig: compiling the physics kernels, once (a minute or less) ...", file=sys.stderr, flush=True)
     return cold
 
 

@@ -11,7 +11,7 @@ never wrong. ASSUMED: w = 1 mm, a strip of 0.2 mm with crimps. Checked in tests/
 
 import numpy as np
 
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.net.mesh import Ints, Net
 
 THICKNESS = 1e-3  # [m] ASSUMED
@@ -26,7 +26,7 @@ def none_close() -> Ints:
     return np.zeros((MOST + 1, 2), dtype=np.int64)
 
 
-@kernel
+@lean
 def list_close(net: Net, x: Array, v: Array, h: float, close: Ints) -> None:
     """Fill close with the pairs that may touch within a step of length h."""
     fastest = 0.0
@@ -41,11 +41,11 @@ def list_close(net: Net, x: Array, v: Array, h: float, close: Ints) -> None:
             continue
         if meeting(net, x, net.strangers[k, 0], net.strangers[k, 1])[0] < reach:
             count += 1
-            close[count] = net.strangers[k]
+            close[count, 0], close[count, 1] = net.strangers[k, 0], net.strangers[k, 1]
     close[0, 0] = count
 
 
-@kernel
+@lean
 def meeting(net: Net, x: Array, first: int, second: int) -> Meeting:
     """Return where the chords of two elements are nearest to each other."""
     a, b, c, d = net.ends[first, 0], net.ends[first, 1], net.ends[second, 0], net.ends[second, 1]
@@ -63,27 +63,29 @@ def meeting(net: Net, x: Array, first: int, second: int) -> Meeting:
     return distance, wx / distance, wy / distance, wz / distance, s, t
 
 
-@kernel
+@lean
 def strip_forces(net: Net, x: Array, close: Ints, f: Array) -> None:
     """Add the pushes (W3) of all close pairs to f [N]."""
     for k in range(1, close[0, 0] + 1):
         distance, ux, uy, uz, s, t = meeting(net, x, close[k, 0], close[k, 1])
         push = STIFFER * net.k_n * max(0.0, THICKNESS - distance)
-        first, second = net.ends[close[k, 0]], net.ends[close[k, 1]]
+        i, j = close[k, 0], close[k, 1]
+        first, second = (net.ends[i, 0], net.ends[i, 1]), (net.ends[j, 0], net.ends[j, 1])
         for body, share in ((first[0], 1.0 - s), (first[1], s), (second[0], t - 1.0), (second[1], -t)):
             f[body, 0] += share * push * ux
             f[body, 1] += share * push * uy
             f[body, 2] += share * push * uz
 
 
-@kernel
+@lean
 def strip_tangent(net: Net, x: Array, close: Ints, blocks: Array) -> None:
     """Add a diagonal bound of the stiffness of all close pairs that touch to blocks [N/m]."""
     for k in range(1, close[0, 0] + 1):
         distance, ux, uy, uz, s, t = meeting(net, x, close[k, 0], close[k, 1])
         if distance >= THICKNESS:
             continue
-        u, first, second = (ux, uy, uz), net.ends[close[k, 0]], net.ends[close[k, 1]]
+        i, j, u = close[k, 0], close[k, 1], (ux, uy, uz)
+        first, second = (net.ends[i, 0], net.ends[i, 1]), (net.ends[j, 0], net.ends[j, 1])
         for body, share in ((first[0], 1.0 - s), (first[1], s), (second[0], 1.0 - t), (second[1], t)):
             block = net.pattern.diagonal[body]
             for p in range(3):
@@ -91,7 +93,7 @@ def strip_tangent(net: Net, x: Array, close: Ints, blocks: Array) -> None:
                     blocks[block, p, q] += 2.0 * STIFFER * net.k_n * share * u[p] * u[q]
 
 
-@kernel
+@lean
 def nearest(net: Net, x: Array) -> float:
     """Return the least distance of two elements that are far from each other in the round body [m]."""
     least = np.inf

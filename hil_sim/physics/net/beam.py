@@ -25,7 +25,7 @@ gradients `f` (M a + f = 0), three of force and three of moment a body. Left out
 symmetric, as large as the moments that accelerate a body, and the change of the damping with the shape.
 """
 
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.net.mesh import Net
 
 # Columns of the scratch `work`, a row for each element: axes at both ends, mean axes, levers of the ends, rows of M in
@@ -35,7 +35,7 @@ CHORD, PULL_A, PULL_B, MOMENT, TURN, TURN_OUT, TORQUE, THRUST = 54, 57, 60, 63, 
 WORK_COLUMNS = 76
 
 
-@kernel
+@lean
 def beam_forces(net: Net, x: Array, R: Array, v: Array, work: Array, f: Array) -> tuple[float, float]:
     """Add the gradient of (N1) with its damping to f; return energy [J] and power lost in bending [W].
 
@@ -62,7 +62,7 @@ def beam_forces(net: Net, x: Array, R: Array, v: Array, work: Array, f: Array) -
     return energy, loss
 
 
-@kernel
+@lean
 def carry_axes(net: Net, R: Array, body: int, k: int, work: Array, to: int) -> None:
     """Write the axes of element k as body carries them."""
     for i in range(3):
@@ -74,7 +74,7 @@ def carry_axes(net: Net, R: Array, body: int, k: int, work: Array, to: int) -> N
             )
 
 
-@kernel
+@lean
 def lever(work: Array, k: int, axis: int, to: int) -> None:
     """Write half the cross product of an axis with the chord."""
     ax, ay, az = work[k, axis], work[k, axis + 1], work[k, axis + 2]
@@ -84,7 +84,7 @@ def lever(work: Array, k: int, axis: int, to: int) -> None:
     work[k, to + 2] = 0.5 * (ax * ey - ay * ex)
 
 
-@kernel
+@lean
 def stretch(net: Net, x: Array, a: int, b: int, k: int, work: Array, f: Array) -> float:
     """Add what stretch and shear of element k give, after `bend`; return their energy [J]."""
     r1, r2, bow = work[k, TURN + 1], work[k, TURN + 2], net.bow[k]
@@ -124,7 +124,7 @@ def stretch(net: Net, x: Array, a: int, b: int, k: int, work: Array, f: Array) -
     return energy
 
 
-@kernel
+@lean
 def product(work: Array, k: int, i: int, j: int) -> float:
     """Return the product of axis i at a and axis j at b."""
     at_a, at_b = AXES_A + 3 * i, AXES_B + 3 * j
@@ -136,7 +136,7 @@ def product(work: Array, k: int, i: int, j: int) -> float:
     return result
 
 
-@kernel
+@lean
 def measure_turn(work: Array, k: int) -> None:
     """Write r of element k and the rows of M, (N2), in space."""
     share = 1.0 / (1.0 + product(work, k, 0, 0) + product(work, k, 1, 1) + product(work, k, 2, 2))
@@ -153,7 +153,7 @@ def measure_turn(work: Array, k: int) -> None:
         work[k, GAIN + 6 + p] = tz + r1 * tx - r0 * ty + r2 * turn
 
 
-@kernel
+@lean
 def bend(net: Net, v: Array, a: int, b: int, k: int, work: Array, f: Array) -> tuple[float, float]:
     """Add what bending and twist of element k give; return their energy [J] and the power lost [W]."""
     r0, r1, r2 = work[k, TURN], work[k, TURN + 1], work[k, TURN + 2]
@@ -177,7 +177,7 @@ def bend(net: Net, v: Array, a: int, b: int, k: int, work: Array, f: Array) -> t
     return energy, tau * (B0 * q0 * q0 + B1 * q1 * q1 + B2 * q2 * q2)
 
 
-@kernel
+@lean
 def softening(square: float) -> tuple[float, float, float]:
     """Return (1 + square)^(-1/3) and its first two derivatives."""
     s = (1.0 + square) ** (-1.0 / 3.0)
@@ -185,7 +185,7 @@ def softening(square: float) -> tuple[float, float, float]:
     return s, ds, -4.0 * ds / (3.0 * (1.0 + square))
 
 
-@kernel
+@lean
 def gain(work: Array, k: int, i: int, x: float, y: float, z: float) -> float:
     """Return the product of row i of M with a vector in space."""
     at = GAIN + 3 * i
@@ -193,7 +193,7 @@ def gain(work: Array, k: int, i: int, x: float, y: float, z: float) -> float:
     return component
 
 
-@kernel
+@lean
 def turn_stiffness(net: Net, cv: float, k: int, work: Array) -> tuple[float, float, float, float, float, float]:
     """Return 00, 11, 22, 01, 02, 12 of the derivative of moments by 2 r of element k [N m]."""
     r0, r1, r2 = work[k, TURN], work[k, TURN + 1], work[k, TURN + 2]
@@ -214,7 +214,7 @@ def turn_stiffness(net: Net, cv: float, k: int, work: Array) -> tuple[float, flo
     )
 
 
-@kernel
+@lean
 def beam_tangent(net: Net, cv: float, work: Array, blocks: Array) -> None:
     """Add the symmetric derivative of `beam_forces` by position, with velocity following at cv [1/s], to blocks."""
     S, length = net.stiffness, net.length
@@ -257,7 +257,7 @@ def beam_tangent(net: Net, cv: float, work: Array, blocks: Array) -> None:
         skew(work, k, MOMENT, blocks, ba, 3, 3, -0.5)
 
 
-@kernel
+@lean
 def carried(work: Array, k: int, pull: int, blocks: Array, body: int, sign: float) -> None:
     """Add the second derivative by the spin of one body, and its mixed one with the position of the same body."""
     px, py, pz = work[k, pull], work[k, pull + 1], work[k, pull + 2]
@@ -272,7 +272,7 @@ def carried(work: Array, k: int, pull: int, blocks: Array, body: int, sign: floa
     skew(work, k, pull, blocks, body, 3, 0, sign)
 
 
-@kernel
+@lean
 def skew(work: Array, k: int, at: int, blocks: Array, block: int, row: int, column: int, sign: float) -> None:
     """Add a cross-product matrix times sign to part of a block."""
     x, y, z = sign * work[k, at], sign * work[k, at + 1], sign * work[k, at + 2]

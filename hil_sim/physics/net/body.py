@@ -10,7 +10,7 @@ import numpy as np
 from hil_sim.physics import coil
 from hil_sim.physics.body import COIL_STEP, World, gravity
 from hil_sim.physics.coilset import Coils, CoilState
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.net.gauge import attitude, centre, lowest
 from hil_sim.physics.net.mesh import Net
 from hil_sim.physics.net.motion import march
@@ -20,7 +20,7 @@ from hil_sim.physics.state import Method
 from hil_sim.physics.terrain import Terrain
 
 
-@kernel
+@lean
 def advance(
     net: Net, terrain: Terrain, coils: Coils, state: CoilState, world: World, method: Method, m: Motion,
     flight: Array, P: Array, duration: float,
@@ -42,31 +42,34 @@ def advance(
     watch(net, state, m)
 
 
-@kernel
-def rolled(turn: Array) -> float:
-    """Return the part about the y axis of the small rotation from turn[0] to turn[1], and make that the last [rad]."""
+@lean
+def rolled(last: Array, seen: Array) -> float:
+    """Return the part about the y axis of the small turn from the last attitude to that seen, now the last [rad]."""
     spin = 0.0
     for q in range(3):
-        spin += turn[0, 2, q] * turn[1, 0, q] - turn[0, 0, q] * turn[1, 2, q]
-    turn[0] = turn[1]
+        spin += last[2, q] * seen[0, q] - last[0, q] * seen[2, q]
+    for p in range(3):
+        for q in range(3):
+            last[p, q] = seen[p, q]
     return 0.5 * spin
 
 
-@kernel
+@lean
 def tilt(net: Net, world: World, m: Motion, g: tuple[float, float]) -> None:
     """Add to the tally what turning gravity to g does to the potential energy of the body."""
     before = gravity(world, m.tally[TIME])
     if before[0] != g[0]:
-        x, z, mass = centre(net, m.now.x, 0), centre(net, m.now.x, 2), net.mass.sum()
-        m.tally[TILT_WORK] -= mass * ((g[0] - before[0]) * x + (g[1] - before[1]) * z)
+        for b in range(net.bodies):
+            way = (g[0] - before[0]) * m.now.x[b, 0] + (g[1] - before[1]) * m.now.x[b, 2]
+            m.tally[TILT_WORK] -= net.mass[b] * way
 
 
-@kernel
+@lean
 def watch(net: Net, state: CoilState, m: Motion) -> None:
     """Bring rolling, greatest heights and the greatest temperature up to date."""
     tally = m.tally
-    attitude(net, m.now.x, m.attitude[1])
-    tally[TURN] += rolled(m.attitude)
+    attitude(net, m.now.x, m.seen)
+    tally[TURN] += rolled(m.attitude, m.seen)
     tally[APEX] = max(tally[APEX], centre(net, m.now.x, 2))
     tally[CLEARANCE] = max(tally[CLEARANCE], lowest(m))
     for i in range(state.T.size):

@@ -20,17 +20,17 @@ Held against numpy.linalg.solve in tests/test_physics_net_factor.py.
 
 import math
 
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.net.pattern import Indices, Pattern
 
 
-@kernel
+@lean
 def clear(blocks: Array) -> None:
     """Set all blocks to zero, as `factor` needs it of those that are not filled in anew."""
     blocks[:] = 0.0
 
 
-@kernel
+@lean
 def factor(pattern: Pattern, blocks: Array) -> bool:
     """Factor the matrix in place; return False, with the blocks spoilt, if it is not positive definite.
 
@@ -52,7 +52,7 @@ def factor(pattern: Pattern, blocks: Array) -> bool:
     return True
 
 
-@kernel
+@lean
 def invert(blocks: Array, s: int) -> bool:
     """Replace the lower triangle of block s = L L^T by the inverse of L; return False if a pivot is not positive.
 
@@ -88,7 +88,7 @@ def invert(blocks: Array, s: int) -> bool:
     return True
 
 
-@kernel
+@lean
 def scale(blocks: Array, diagonal: int, end: int) -> None:
     """Replace each block below the diagonal of a column by its R_pa, equation (N1)."""
     if blocks.shape[1] != 6 or blocks.shape[2] != 6:
@@ -111,7 +111,7 @@ def scale(blocks: Array, diagonal: int, end: int) -> None:
             blocks[s, i, 3], blocks[s, i, 4], blocks[s, i, 5] = c3, c4, c5
 
 
-@kernel
+@lean
 def spread(blocks: Array, diagonal: int, end: int, target: Indices, update: int) -> int:
     """Take R_pa^T R_pb away from every block where two bodies of a column meet; return the number of updates so far."""
     if blocks.shape[1] != 6 or blocks.shape[2] != 6:
@@ -144,7 +144,7 @@ def spread(blocks: Array, diagonal: int, end: int, target: Indices, update: int)
     return update
 
 
-@kernel
+@lean
 def solve(pattern: Pattern, blocks: Array, b: Array, x: Array) -> None:
     """Write to x the solution of M x = b, M as `factor` left it; x may be b.
 
@@ -159,12 +159,14 @@ def solve(pattern: Pattern, blocks: Array, b: Array, x: Array) -> None:
     x : array (n, 6)
         Solution, numbered likewise [any]
     """
-    x[:] = b
+    for body in range(b.shape[0]):
+        for i in range(6):
+            x[body, i] = b[body, i]
     forward(pattern, blocks, x)
     backward(pattern, blocks, x)
 
 
-@kernel
+@lean
 def forward(pattern: Pattern, blocks: Array, x: Array) -> None:
     """Replace x by the solution y of R^T y = x."""
     order, start, row = pattern.order, pattern.start, pattern.row
@@ -184,7 +186,7 @@ def forward(pattern: Pattern, blocks: Array, x: Array) -> None:
                 x[other, j] = total
 
 
-@kernel
+@lean
 def backward(pattern: Pattern, blocks: Array, x: Array) -> None:
     """Replace x by the solution y of R y = x."""
     order, start, row = pattern.order, pattern.start, pattern.row

@@ -6,7 +6,7 @@ of it is neither speed nor height of the centre of mass at take-off was lost or 
 
 import numpy as np
 
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.net.gauge import centre, rise_rate
 from hil_sim.physics.net.mesh import Net
 from hil_sim.physics.net.state import CONTACTS, ELASTIC, TIME, Motion
@@ -27,7 +27,7 @@ def no_flight() -> Array:
     return flight
 
 
-@kernel
+@lean
 def follow(net: Net, m: Motion, flight: Array) -> None:
     """Bring the record up to date after an accepted step."""
     z = centre(net, m.now.x, 2)
@@ -46,7 +46,7 @@ def follow(net: Net, m: Motion, flight: Array) -> None:
             flight[BEST + i] = flight[NOW + i]
 
 
-@kernel
+@lean
 def take_off(net: Net, m: Motion, flight: Array, z: float) -> None:
     """Note where a flight begins."""
     flight[NOW + E_0], flight[NOW + Z_0] = flight[STORED], flight[STORED_Z]

@@ -10,7 +10,7 @@ how a body has rolled also where the core hangs in one point and does not turn w
 
 import numpy as np
 
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.net.ground import PLACE
 from hil_sim.physics.net.mesh import Net
 from hil_sim.physics.net.state import Motion, State
@@ -18,7 +18,7 @@ from hil_sim.physics.net.state import Motion, State
 ITERATIONS = 8  # to rounding, also for a body squashed to a fifth
 
 
-@kernel
+@lean
 def centre(net: Net, x: Array, axis: int) -> float:
     """Return one coordinate of the centre of mass [m]."""
     mass = moment = 0.0
@@ -28,7 +28,7 @@ def centre(net: Net, x: Array, axis: int) -> float:
     return moment / mass
 
 
-@kernel
+@lean
 def rise_rate(net: Net, v: Array) -> float:
     """Return the speed at which the centre of mass leaves the plane [m/s]."""
     mass = moment = 0.0
@@ -38,7 +38,7 @@ def rise_rate(net: Net, v: Array) -> float:
     return moment / mass
 
 
-@kernel
+@lean
 def lowest(m: Motion) -> float:
     """Return the height of the lowest contact point [m]."""
     height = np.inf
@@ -47,7 +47,7 @@ def lowest(m: Motion) -> float:
     return float(height)
 
 
-@kernel
+@lean
 def kinetic(net: Net, s: State) -> float:
     """Return the kinetic energy [J]."""
     energy = 0.0
@@ -57,25 +57,27 @@ def kinetic(net: Net, s: State) -> float:
     return energy
 
 
-@kernel
+@lean
 def attitude(net: Net, x: Array, R: Array) -> None:
     """Write the attitude (A1) of the hoops at node places x to R (3, 3)."""
-    count = net.bodies - 1
-    R[:] = 0.0
+    count, square = net.bodies - 1, 0.0
     for p in range(3):
         middle = 0.0
+        R[p, 0] = R[p, 1] = R[p, 2] = 0.0
         for b in range(count):
             middle += x[b, p] / count
         for b in range(count):
             for q in range(3):
                 R[p, q] += (x[b, p] - middle) * net.directions[b, q]
-    scale = np.sqrt((R * R).sum() / 3.0)
-    R /= scale
+        square += R[p, 0] ** 2 + R[p, 1] ** 2 + R[p, 2] ** 2
+    for p in range(3):
+        for q in range(3):
+            R[p, q] *= np.sqrt(3.0 / square)
     for _ in range(ITERATIONS):
         halve(R)
 
 
-@kernel
+@lean
 def halve(X: Array) -> None:
     """Replace X by (X + X^{-T})/2; the inverse transposed is the matrix of cofactors over the determinant."""
     a, b, c, d, e, f, g, h, i = X[0, 0], X[0, 1], X[0, 2], X[1, 0], X[1, 1], X[1, 2], X[2, 0], X[2, 1], X[2, 2]

@@ -15,7 +15,7 @@ symmetric and Newton's method quick; steps are short wherever normal forces chan
 
 import numpy as np
 
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.net.mesh import Net
 from hil_sim.physics.terrain import Terrain, depth
 
@@ -29,7 +29,7 @@ Triple = tuple[float, float, float]
 DEPTH_RAMP = 1e-5  # [m] ASSUMED: numerical, less than what a standing body sinks in
 
 
-@kernel
+@lean
 def ground_forces(net: Net, terrain: Terrain, x: Array, R: Array, v: Array, touch: Array, f: Array) -> None:
     """Add the pushes (G1) to f, and note them in touch [N]."""
     for k in range(net.feet.size):
@@ -50,7 +50,7 @@ def ground_forces(net: Net, terrain: Terrain, x: Array, R: Array, v: Array, touc
             touch[k, BORNE] = 1.0
 
 
-@kernel
+@lean
 def push(net: Net, x: Array, v: Array, body: int, k: int, touch: Array, f: Array) -> None:
     """Add the force on point k, which touches."""
     nx, nz, deep = touch[k, NORMAL_X], touch[k, NORMAL_Z], touch[k, DEPTH]
@@ -84,7 +84,7 @@ def push(net: Net, x: Array, v: Array, body: int, k: int, touch: Array, f: Array
     f[body, 5] -= ax * fy - ay * fx
 
 
-@kernel
+@lean
 def ground_tangent(net: Net, x: Array, cv: float, touch: Array, blocks: Array) -> None:
     """Add the derivative of `ground_forces` at a given bound of friction to the blocks of the bodies."""
     for k in range(net.feet.size):
@@ -115,13 +115,13 @@ def ground_tangent(net: Net, x: Array, cv: float, touch: Array, blocks: Array) -
                 )
 
 
-@kernel
+@lean
 def cross(a: Triple, b: Triple) -> Triple:
     """Return the cross product of two vectors."""
     return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
-@kernel
+@lean
 def settle_anchors(net: Net, touch: Array) -> int:
     """Commit the contact of an accepted step: anchors of new and of slipping points; return how many touch."""
     count = 0
@@ -143,7 +143,7 @@ def settle_anchors(net: Net, touch: Array) -> int:
     return count
 
 
-@kernel
+@lean
 def slide(net: Net, touch: Array, k: int) -> None:
     """Move the anchor of a slipping point so that its spring carries the bound of friction."""
     nx, nz, normal = touch[k, NORMAL_X], touch[k, NORMAL_Z], touch[k, PUSH]

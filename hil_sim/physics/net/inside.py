@@ -12,7 +12,7 @@ here; checked in tests/test_physics_net_contact.py.
 
 import numpy as np
 
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.net.beam import AXES_A, AXES_B
 from hil_sim.physics.net.mesh import Net
 
@@ -21,7 +21,7 @@ PUSH, UNIT, LEVER, SHARE = 0, 1, 4, 7
 NEAR_COLUMNS = 8
 
 
-@kernel
+@lean
 def core_forces(net: Net, x: Array, work: Array, near: Array, f: Array) -> bool:
     """Add to f what strips push on a core that comes too near; return whether any does. Needs `beam_forces` before."""
     core, touched = net.bodies - 1, False
@@ -39,7 +39,7 @@ def core_forces(net: Net, x: Array, work: Array, near: Array, f: Array) -> bool:
     return touched
 
 
-@kernel
+@lean
 def measure(net: Net, x: Array, work: Array, k: int, near: Array) -> None:
     """Find the place of strip k that is nearest to the core, and the push there."""
     a, b, core = net.ends[k, 0], net.ends[k, 1], net.bodies - 1
@@ -62,7 +62,7 @@ def measure(net: Net, x: Array, work: Array, k: int, near: Array) -> None:
     near[k, SHARE] = s
 
 
-@kernel
+@lean
 def give(net: Net, k: int, core: int, near: Array, f: Array) -> None:
     """Add the push of strip k to f."""
     push, s = near[k, PUSH], near[k, SHARE]
@@ -74,7 +74,7 @@ def give(net: Net, k: int, core: int, near: Array, f: Array) -> None:
             f[body, 3 + p] += share * push * near[k, LEVER + p]
 
 
-@kernel
+@lean
 def core_tangent(net: Net, near: Array, blocks: Array) -> None:
     """Add the derivative of `core_forces` along the pushes, from what that noted, to blocks."""
     core = net.pattern.diagonal[net.bodies - 1]
@@ -93,7 +93,7 @@ def core_tangent(net: Net, near: Array, blocks: Array) -> None:
                 add(near, k, net.k_n * share, blocks, net.pattern.diagonal[body], 6, 6)
 
 
-@kernel
+@lean
 def add(near: Array, k: int, stiffness: float, blocks: Array, block: int, rows: int, columns: int) -> None:
     """Add stiffness times J J^T of push k to the first rows and columns of a block."""
     for p in range(rows):

@@ -17,7 +17,7 @@ repeatability: tests/test_physics_net_motion.py.
 
 import numpy as np
 
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.net.apart import list_close, strip_forces, strip_tangent
 from hil_sim.physics.net.beam import beam_forces, beam_tangent
 from hil_sim.physics.net.factor import factor, solve
@@ -64,7 +64,7 @@ ITERATIONS_MAX = 12
 CUTS_MAX = 5
 
 
-@kernel
+@lean
 def forces(net: Net, terrain: Terrain, g: tuple[float, float], m: Motion, s: State) -> tuple[bool, float, float]:
     """Write the gradient of all forces in s to s.f; return if the core is touched, U [J] and what it loses [W]."""
     s.f[:] = 0.0
@@ -81,7 +81,7 @@ def forces(net: Net, terrain: Terrain, g: tuple[float, float], m: Motion, s: Sta
     return core_forces(net, s.x, m.work, m.near, s.f), energy, loss
 
 
-@kernel
+@lean
 def begin(net: Net, terrain: Terrain, g: tuple[float, float], m: Motion) -> None:
     """Fill forces and accelerations of the present state: a body set down or let go has no past."""
     _, m.tally[ELASTIC], _ = forces(net, terrain, g, m, m.now)
@@ -89,10 +89,12 @@ def begin(net: Net, terrain: Terrain, g: tuple[float, float], m: Motion) -> None
         for p in range(3):
             m.now.a[b, p] = -m.now.f[b, p] / net.mass[b]
             m.now.a[b, 3 + p] = -m.now.f[b, 3 + p] / net.inertia[b]
-    m.touch[:, PLACE_BEFORE : PLACE_BEFORE + 3] = m.touch[:, PLACE : PLACE + 3]
+    for k in range(net.feet.size):
+        for p in range(3):
+            m.touch[k, PLACE_BEFORE + p] = m.touch[k, PLACE + p]
 
 
-@kernel
+@lean
 def correct(net: Net, m: Motion, cv: float, ca: float, near: bool) -> bool:
     """Write Newton's correction of places and spins; return False if the system is not positive."""
     m.blocks[:] = 0.0
@@ -113,7 +115,7 @@ def correct(net: Net, m: Motion, cv: float, ca: float, near: bool) -> bool:
     return True
 
 
-@kernel
+@lean
 def residual(net: Net, method: Method, m: Motion) -> float:
     """Write minus the error of (I2), divided by 1 - a_f, to rhs; return its greatest entry [N]."""
     inertia, old = 1.0 / (1.0 - method.a_f), method.a_f / (1.0 - method.a_f)
@@ -128,7 +130,7 @@ def residual(net: Net, method: Method, m: Motion) -> float:
     return greatest
 
 
-@kernel
+@lean
 def place(net: Net, m: Motion, method: Method, h: float) -> None:
     """Fill the new state from the change of the step, (I2)."""
     ca, cv = 1.0 / (method.beta * h * h), method.gamma / (method.beta * h)
@@ -144,7 +146,7 @@ def place(net: Net, m: Motion, method: Method, h: float) -> None:
         turned(now.R, m.change, b, new.R)
 
 
-@kernel
+@lean
 def attempt(net: Net, terrain: Terrain, g: tuple[float, float], method: Method, m: Motion, h: float) -> bool:
     """Solve one step of length h for the new state; return False if it must be shorter."""
     ca = (1.0 - method.a_m) / ((1.0 - method.a_f) * method.beta * h * h)
@@ -176,7 +178,7 @@ def attempt(net: Net, terrain: Terrain, g: tuple[float, float], method: Method, 
     return False
 
 
-@kernel
+@lean
 def retreat(m: Motion) -> None:
     """Take half of the last correction back."""
     for b in range(m.change.shape[0]):
@@ -185,7 +187,7 @@ def retreat(m: Motion) -> None:
             m.change[b, p] -= m.correction[b, p]
 
 
-@kernel
+@lean
 def local_error(net: Net, method: Method, m: Motion, h: float) -> float:
     """Return the estimated error of the new places [m]."""
     greatest = 0.0
@@ -195,7 +197,7 @@ def local_error(net: Net, method: Method, m: Motion, h: float) -> float:
     return float(abs(method.beta - 1.0 / 6.0) * h * h * greatest)
 
 
-@kernel
+@lean
 def accept(net: Net, m: Motion, h: float) -> None:
     """Make the new state the present one and add the work of the step to the tallies."""
     tally, coils = m.tally, m.coils
@@ -205,22 +207,29 @@ def accept(net: Net, m: Motion, h: float) -> None:
         shortening = coils[LENGTH_BEFORE, s] - coils[LENGTH, s]
         tally[COIL_WORK] += 0.5 * (coils[PULL, s] + coils[PULL_BEFORE, s]) * shortening
         tally[PEAK_FORCE] = max(tally[PEAK_FORCE], coils[PULL, s])
-    coils[LENGTH_BEFORE] = coils[LENGTH]
-    coils[PULL_BEFORE] = coils[PULL]
+        coils[LENGTH_BEFORE, s], coils[PULL_BEFORE, s] = coils[LENGTH, s], coils[PULL, s]
     drag = drag_loss(net, m.new)
     tally[BEND_LOSS] += 0.5 * h * (tally[LOSS_NEXT] + tally[BEND_RATE])
     tally[DRAG_LOSS] += 0.5 * h * (drag + tally[DRAG_RATE])
     tally[BEND_RATE], tally[DRAG_RATE], tally[ELASTIC] = tally[LOSS_NEXT], drag, tally[ELASTIC_NEXT]
     tally[TIME] += h
     tally[STEPS] += 1.0
-    m.now.x[:] = m.new.x
-    m.now.R[:] = m.new.R
-    m.now.v[:] = m.new.v
-    m.now.a[:] = m.new.a
-    m.now.f[:] = m.new.f
+    keep(m.now, m.new)
 
 
-@kernel
+@lean
+def keep(now: State, new: State) -> None:
+    """Make the new state the present one."""
+    for b in range(now.x.shape[0]):
+        for p in range(3):
+            now.x[b, p] = new.x[b, p]
+            for q in range(3):
+                now.R[b, p, q] = new.R[b, p, q]
+        for p in range(6):
+            now.v[b, p], now.a[b, p], now.f[b, p] = new.v[b, p], new.a[b, p], new.f[b, p]
+
+
+@lean
 def ground_work(m: Motion) -> float:
     """Return what the ground did on the body in the step [J]."""
     work, touch = 0.0, m.touch
@@ -231,7 +240,7 @@ def ground_work(m: Motion) -> float:
     return work
 
 
-@kernel
+@lean
 def drag_loss(net: Net, s: State) -> float:
     """Return the power that the air takes [W]."""
     power = 0.0
@@ -241,7 +250,7 @@ def drag_loss(net: Net, s: State) -> float:
     return power
 
 
-@kernel
+@lean
 def march(
     net: Net, terrain: Terrain, g: tuple[float, float], method: Method, m: Motion, flight: Array, duration: float
 ) -> None:

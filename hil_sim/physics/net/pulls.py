@@ -16,7 +16,7 @@ differences in tests/test_physics_net_forces.py.
 import numpy as np
 
 from hil_sim.physics.coilset import Coils
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.net.mesh import Net
 
 # Rows of the scratch `coils`: length, force, tangent, unit vector, arm; the frozen coil; length and force before.
@@ -37,7 +37,7 @@ COIL_ROWS = 15
 DAMPING_RAMP = 5e-5  # [m] ASSUMED: numerical, short against the stretch of a hot coil that pulls
 
 
-@kernel
+@lean
 def freeze(coils: Coils, xi: Array, c: Array) -> None:
     """Write stiffness, free length, solid height and stiffness below it of coils at phase xi [N/m, m]."""
     for s in range(xi.size):
@@ -47,7 +47,7 @@ def freeze(coils: Coils, xi: Array, c: Array) -> None:
         c[HARD, s] = coils.k_s[s]
 
 
-@kernel
+@lean
 def tension(c: Array, s: int, length: float, rate: float, damping: float) -> tuple[float, float]:
     """Return force [N] and stiffness [N/m] of frozen coil s, (P1)."""
     F = k = 0.0
@@ -61,7 +61,7 @@ def tension(c: Array, s: int, length: float, rate: float, damping: float) -> tup
     return F, k
 
 
-@kernel
+@lean
 def measure(net: Net, x: Array, R: Array, c: Array, s: int) -> None:
     """Write length, unit vector and arm of coil s."""
     near, far = net.near[s], net.far[s]
@@ -77,7 +77,7 @@ def measure(net: Net, x: Array, R: Array, c: Array, s: int) -> None:
         c[UNIT + p, s] /= c[LENGTH, s]
 
 
-@kernel
+@lean
 def coil_forces(net: Net, x: Array, R: Array, v: Array, c: Array, f: Array) -> None:
     """Add the pull (P1) of every coil to f; note lengths, forces and directions in c."""
     for s in range(net.near.size):
@@ -101,7 +101,7 @@ def coil_forces(net: Net, x: Array, R: Array, v: Array, c: Array, f: Array) -> N
         f[near, 5] -= F * mz
 
 
-@kernel
+@lean
 def coil_tangent(net: Net, cv: float, c: Array, blocks: Array) -> None:
     """Add the derivative of `coil_forces`, from what that noted, to blocks."""
     for s in range(net.near.size):
@@ -117,11 +117,11 @@ def coil_tangent(net: Net, cv: float, c: Array, blocks: Array) -> None:
                 blocks[near, p, q] += K
                 blocks[far, p, q] += K
                 blocks[pair, p, q] -= K
-        lean(net, c, s, along, across, blocks, near, pair)
+        turn_near(net, c, s, along, across, blocks, near, pair)
 
 
-@kernel
-def lean(net: Net, c: Array, s: int, along: float, across: float, blocks: Array, near: int, pair: int) -> None:
+@lean
+def turn_near(net: Net, c: Array, s: int, along: float, across: float, blocks: Array, near: int, pair: int) -> None:
     r"""Add what the spin of the near body gives: K_d [r]_x and [r]_x^T K_d [r]_x, and the bending of its arm."""
     a, u = (c[ARM, s], c[ARM + 1, s], c[ARM + 2, s]), (c[UNIT, s], c[UNIT + 1, s], c[UNIT + 2, s])
     if a[0] == 0.0 and a[1] == 0.0 and a[2] == 0.0:

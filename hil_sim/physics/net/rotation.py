@@ -8,10 +8,10 @@ Rodrigues' formula (standard result). Checked in tests/test_physics_net_motion.p
 
 import numpy as np
 
-from hil_sim.physics.compiled import Array, kernel
+from hil_sim.physics.compiled import Array, lean
 
 
-@kernel
+@lean
 def turned(R0: Array, change: Array, b: int, R1: Array) -> None:
     """Write exp(change[b, 3:]) R0[b] to R1[b]."""
     x, y, z = change[b, 3], change[b, 4], change[b, 5]
@@ -29,7 +29,7 @@ def turned(R0: Array, change: Array, b: int, R1: Array) -> None:
         R1[b, 2, q] = a2 + first * b2 + second * (x * b1 - y * b0)
 
 
-@kernel
+@lean
 def straighten(R: Array) -> None:
     """Make matrices orthogonal again that rounding has bent, one step of Newton's iteration for the polar factor."""
     for b in range(R.shape[0]):

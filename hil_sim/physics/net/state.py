@@ -46,7 +46,8 @@ class Motion(NamedTuple):
     blocks: Array  # (slots, 6, 6)
     rhs: Array  # (B, 6)
     correction: Array  # (B, 6)
-    attitude: Array  # of the hoops at last look, and room for the next (2, 3, 3) [1]
+    attitude: Array  # of the hoops at last look (3, 3) [1]
+    seen: Array  # room for the next (3, 3) [1]
 
 
 def state_of(bodies: int) -> State:
@@ -67,5 +68,5 @@ def motion_of(net: Net, x: Array, R: Array) -> Motion:
         now, state_of(count), np.zeros((count, 6)), np.zeros((points, TOUCH_COLUMNS)),
         np.zeros((COIL_ROWS, net.near.size)), tally,
         np.zeros((net.beams.size, WORK_COLUMNS)), np.zeros((net.beams.size, NEAR_COLUMNS)), none_close(),
-        np.zeros((net.pattern.slots, 6, 6)), np.zeros((count, 6)), np.zeros((count, 6)), np.stack([R, R]),
+        np.zeros((net.pattern.slots, 6, 6)), np.zeros((count, 6)), np.zeros((count, 6)), np.array(R), np.array(R),
     )  # fmt: skip
