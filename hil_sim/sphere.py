@@ -20,7 +20,9 @@ from hil_sim.physics.bodies import Attitude
 from hil_sim.physics.body import World, gravity, packed
 from hil_sim.physics.coilset import coils_of, cold
 from hil_sim.physics.compiled import Array, bound, prepare
-from hil_sim.physics.net import body, flight
+from hil_sim.physics.flight import jump_of, no_flight
+from hil_sim.physics.net import body
+from hil_sim.physics.net.apart import nearest
 from hil_sim.physics.net.gauge import centre, kinetic
 from hil_sim.physics.net.mesh import SPHERE, net_of, unit
 from hil_sim.physics.net.motion import begin
@@ -47,9 +49,11 @@ from hil_sim.physics.net.state import (
     motion_of,
 )
 from hil_sim.physics.state import method_of
-from hil_sim.physics.terrain import terrain_of
+from hil_sim.physics.terrain import profile, terrain_of
 from hil_sim.robotfile import RobotFile
 
+SEEN = 5.0  # radii of ground on either side in a snapshot
+SHARE = 0.01  # of the tolerated error, left to Newton's method
 SETTLING_DRAG = 20.0  # [1/s] ASSUMED: numerical, the body is at rest within its settle_s
 
 
@@ -65,13 +69,15 @@ class SpherePlant:
         spokes = [direction(label) for label in self.labels[: count - len(robot.jumps)]]
         chords = [(direction(a), direction(b)) for a, b in robot.jumps]
         self._compass = dict(zip(self.labels, (unit(each) for each in spokes), strict=False))
+        self._radius = numbers.R
         self._net = net_of(numbers, ground, SPHERE, spokes, chords)
         self._terrain = terrain_of(ground, seed, 2.0 * numbers.R)
         self._world = World(ground.gravity, ground.slope, inf, abs(ground.slope) / ground.tilt_rate)
         self._tilt_after, self._taken_hold = ground.tilt_after, False
-        self._method = method_of(rho, tolerance or robot.tolerance)
+        self._method = method_of(rho, tolerance or robot.tolerance, share=SHARE)
         self._motion = motion_of(self._net, *self._placed(numbers.R, robot.start))
-        self._flight = flight.no_flight()
+        self._flight = no_flight()
+        self._weight = ground.gravity * float(self._net.mass.sum())
         coils = coils_of(robot.coil, count, ground.T_amb)
         self._coils = packed(coils)
         for s in range(count):
@@ -143,14 +149,15 @@ class SpherePlant:
             "attitude": list(self.attitude()),
             "down": self._down(),
             "contacts": int(tally[CONTACTS]),
-            "jump": self._jump(),
+            "strip_gap_mm": 1e3 * float(nearest(self._net, self._motion.now.x)),
+            "jump": jump_of(self._flight, self._weight, self._start[2]),
         }
 
     def snapshot(self) -> dict[str, Any]:
         """Return the shape at this moment in millimetres along, across and above the plane, and where coils pull."""
-        now, net, coils = self._motion.now, self._net, self._motion.coils
-        nodes = (1e3 * now.x).tolist()
-        starts = (1e3 * (now.x[net.near] + coils[ARM : ARM + 3].T)).tolist()
+        x, net, coils = self._motion.now.x, self._net, self._motion.coils
+        nodes, near = (1e3 * x).tolist(), profile(self._terrain, x[-1, 0], SEEN * self._radius)
+        starts = (1e3 * (x[net.near] + coils[ARM : ARM + 3].T)).tolist()
         gx, gz = self._gravity()
         return {
             "t_s": float(self._motion.tally[TIME]),
@@ -167,7 +174,7 @@ class SpherePlant:
                 )
             },
             "energy_j": {name.removesuffix("_j"): value for name, value in self._stored().items()},
-            "terrain_mm": (1e3 * np.stack([self._terrain.x, self._terrain.z], axis=1)).tolist(),
+            "terrain_mm": [[1e3 * along, 1e3 * up] for along, up in near],
         }
 
     def energies(self) -> dict[str, float]:
@@ -209,7 +216,7 @@ class SpherePlant:
         keep = m.tally[[STEP, ELASTIC, CONTACTS]]
         m.tally[:] = 0.0
         m.tally[[STEP, ELASTIC, CONTACTS]] = keep
-        self._flight[:] = flight.no_flight()
+        self._flight[:] = no_flight()
         body.watch(self._net, self._state, m)
         m.tally[TURN] = 0.0
 
@@ -231,23 +238,6 @@ class SpherePlant:
         """Return the label of the coil from the core whose direction is nearest to down."""
         down = -self._motion.attitude[2]
         return max(self._compass, key=lambda label: float(self._compass[label] @ down))
-
-    def _jump(self) -> dict[str, float] | None:
-        """Return the highest flight, or None when there was none of more than a millimetre."""
-        record, mass = self._flight, float(self._net.mass.sum())
-        stored, z_0, left, z_1, t, speed = record[flight.BEST : flight.BEST + flight.ROW].tolist()
-        apex = float(record[flight.APEX]) - self._start[2]
-        if not float(record[flight.APEX]) - z_1 > 1e-3:
-            return None
-        flown = 0.5 * mass * speed**2 - mass * self._gravity()[1] * (z_1 - z_0)
-        return {
-            "stored_mj": 1e3 * stored,
-            "released_mj": 1e3 * (stored - left),
-            "takeoff_m_per_s": speed,
-            "takeoff_s": t,
-            "apex_mm": 1e3 * apex,
-            "losses_mj": 1e3 * (stored - left - flown),
-        }
 
     def _stored(self) -> dict[str, float]:
         """Return the mechanical energy of hoops and core [J]; that in the coils belongs to the coils."""

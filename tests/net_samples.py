@@ -7,8 +7,8 @@ import numpy as np
 from scipy.linalg import eigh
 
 from hil_sim.physics.bodies import GroundNumbers, SphereNumbers
+from hil_sim.physics.flight import no_flight
 from hil_sim.physics.net.beam import beam_forces, beam_tangent
-from hil_sim.physics.net.flight import no_flight
 from hil_sim.physics.net.mesh import SPHERE, Net, net_of, slot
 from hil_sim.physics.net.motion import begin, march
 from hil_sim.physics.net.pulls import FREE, HARD, SOFT, SOLID

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hil_sim.physics.flight import no_flight
 from hil_sim.physics.net.apart import THICKNESS, list_close, nearest, none_close, strip_forces
 from hil_sim.physics.net.beam import beam_forces
-from hil_sim.physics.net.flight import APEX, BEST, E_0, E_1, V_1, follow, no_flight
 from hil_sim.physics.net.gauge import centre
 from hil_sim.physics.net.ground import FORCE, PUSH
 from hil_sim.physics.net.inside import PUSH as CORE_PUSH
@@ -15,7 +15,7 @@ from hil_sim.physics.net.inside import core_forces, core_tangent
 from hil_sim.physics.net.mesh import SPHERE, net_of, node_at
 from hil_sim.physics.net.motion import march
 from hil_sim.physics.net.pulls import FREE, SOFT
-from hil_sim.physics.net.state import CONTACTS, ELASTIC, TIME
+from hil_sim.physics.net.state import CONTACTS, ELASTIC
 from hil_sim.physics.state import method_of
 from tests.net_samples import FALL, GROUND, NUMBERS, PLANE, Sample, dense, placed, run, sphere, started
 
@@ -115,22 +115,6 @@ def test_a_core_that_is_thrown_at_a_crossing_stays_inside():
     assert sample.m.tally[ELASTIC] > 0.0
     assert np.linalg.norm(x[core] - x[:-1].mean(axis=0)) < NUMBERS.R
     assert x[wall, 0] > x[core, 0]
-
-
-def test_a_flight_is_recorded_from_its_take_off_to_its_apex():
-    sample, flight = placed(sphere(), 0.2), no_flight()
-    net, m = sample
-    m.tally[CONTACTS], m.tally[ELASTIC] = 4.0, 3e-3
-    follow(net, m, flight)
-    m.tally[[CONTACTS, ELASTIC, TIME]] = 0.0, 1e-3, 0.5
-    m.now.v[:, 2] = 1.0
-    march(net, PLANE, FALL, method_of(0.5, 4.5e-6), started(sample, FALL).m, flight, 0.15)
-
-    best = flight[BEST : BEST + 6]
-    assert best[E_0] == 3e-3
-    assert best[E_1] < 2e-3
-    assert best[V_1] == pytest.approx(1.0, abs=0.05)
-    assert flight[APEX] == pytest.approx(0.2 + 1.0 / (2 * 9.81), abs=1e-3)
 
 
 def test_two_strips_that_are_pulled_together_do_not_pass_through():

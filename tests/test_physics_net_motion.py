@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hil_sim.physics.net.flight import no_flight
+from hil_sim.physics.flight import no_flight
 from hil_sim.physics.net.gauge import attitude, centre, kinetic
 from hil_sim.physics.net.motion import march
 from hil_sim.physics.net.rotation import matrix, quaternion, straighten

@@ -11,7 +11,7 @@ how a body has rolled also where the core hangs in one point and does not turn w
 import numpy as np
 
 from hil_sim.physics.compiled import Array, lean
-from hil_sim.physics.net.ground import PLACE
+from hil_sim.physics.net.ground import DEPTH
 from hil_sim.physics.net.mesh import Net
 from hil_sim.physics.net.state import Motion, State
 
@@ -40,10 +40,10 @@ def rise_rate(net: Net, v: Array) -> float:
 
 @lean
 def lowest(m: Motion) -> float:
-    """Return the height of the lowest contact point [m]."""
+    """Return the height of the lowest contact point above the ground [m]."""
     height = np.inf
     for k in range(m.touch.shape[0]):
-        height = min(height, m.touch[k, PLACE + 2])
+        height = min(height, -m.touch[k, DEPTH])
     return float(height)
 
 

@@ -18,10 +18,11 @@ repeatability: tests/test_physics_net_motion.py.
 import numpy as np
 
 from hil_sim.physics.compiled import Array, lean
+from hil_sim.physics.flight import watch_flight
 from hil_sim.physics.net.apart import list_close, strip_forces, strip_tangent
 from hil_sim.physics.net.beam import beam_forces, beam_tangent
 from hil_sim.physics.net.factor import factor, solve
-from hil_sim.physics.net.flight import follow
+from hil_sim.physics.net.gauge import centre, lowest, rise_rate
 from hil_sim.physics.net.ground import (
     FORCE,
     FORCE_BEFORE,
@@ -267,7 +268,8 @@ def march(
             m.tally[STEP] = 0.5 * h
             continue
         accept(net, m, h)
-        follow(net, m, flight)
+        z, rises = centre(net, m.now.x, 2), rise_rate(net, m.now.v)
+        watch_flight(flight, m.tally[TIME], m.tally[CONTACTS] > 0.0, lowest(m), z, rises, m.tally[ELASTIC])
         left -= h
         growth = min(2.0, 0.9 * (method.tolerance / max(error, 1e-12)) ** (1.0 / 3.0))
         if growth < 1.0 or h > 0.5 * m.tally[STEP]:
