@@ -35,6 +35,7 @@ $(READY): pyproject.toml
 	|| $(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,plot,can,data]'
 	@echo "Compiling the physics for this machine"
 	@$(BIN)/softrig info --robot sim:circular >/dev/null
+	@$(BIN)/softrig info --robot sim:sphere-b >/dev/null
 	@touch $@
 
 test: $(READY)
@@ -58,7 +59,7 @@ demo: $(READY)
 docs: $(READY)
 	$(BIN)/python docs/generate.py
 	$(BIN)/softrig run gaits/circular-crawl.gait --robot sim:circular --plot docs/crawl.svg >/dev/null
-	$(BIN)/softrig figure 3 -o docs/poses.svg
+	for number in 3 6 7 8 9; do $(BIN)/softrig figure $$number -o docs/figure-$$number.svg || exit 1; done
 
 sensitivity: $(READY)
 	$(BIN)/python docs/sensitivity.py
