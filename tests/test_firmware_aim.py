@@ -112,7 +112,7 @@ def test_a_wait_for_the_chosen_coil_to_lose_its_heat_ends_when_it_has(rig):
     rig.run(500)
     assert rig.core.state == messages.RUNNING
 
-    rig.run(3000)
+    rig.run(8000)
 
     assert rig.events("finished")
     assert 290_000 < rig.core.sense.heat_uj[A00M1] + 300_000 < 600_000
