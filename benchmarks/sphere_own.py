@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.sphere_peers import BODY, COLD_M, END, GROUND, HOT_M, JUMP_S, LOOK_S, RAMP_S, SPRING_N_PER_M, Figures, G
 from hil_sim.physics.compiled import bound
-from hil_sim.physics.net.flight import no_flight
+from hil_sim.physics.flight import no_flight
 from hil_sim.physics.net.gauge import centre, rise_rate
 from hil_sim.physics.net.mesh import SPHERE, Net, net_of, node_at
 from hil_sim.physics.net.motion import begin, march

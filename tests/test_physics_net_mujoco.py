@@ -1,7 +1,7 @@
 """The sphere's solver against theory and against a MuJoCo chain of links, each extrapolated in the number of nodes.
 
-The chain shares nothing with the solver: other unknowns, another program. Its strip does not shear, the solver's does,
-as a solid of this stretch stiffness would; that makes half a percent.
+The chain shares nothing with the solver: other unknowns, another program. Loads follow the strip's stiffness, so that
+the shapes stay the same when a robot file is tuned.
 """
 
 from dataclasses import replace
@@ -16,7 +16,8 @@ from tests.sphere_laws import pole_compliance, squash_frequency
 
 SPHERE = load("sphere-b").sphere
 SMALL_N = 1e-4  # the squash of a ten-thousandth of the diameter
-LOADS_N = [0.02, 0.1, 0.2, 0.3, 0.4]  # to a third of the diameter, close to where the poles snap through
+# To a third of the diameter, close to where the poles snap through.
+LOADS_N = [load * SPHERE.EI / SPHERE.R**2 for load in (0.9, 4.5, 9.0, 13.5, 18.0)]
 
 
 def squash(distances: np.ndarray) -> np.ndarray:
@@ -47,17 +48,24 @@ def test_the_chain_without_stretch_vibrates_in_its_squash_mode_as_theory_says():
 
 
 def test_the_solver_gives_under_a_small_load_as_theory_says():
-    """Shear, which the theory of thin hoops leaves out, adds half a percent."""
     give = extrapolated(*(squash(net_pole_distance(SPHERE, nodes, [SMALL_N])) for nodes in (24, 48)))
 
-    assert give / SMALL_N == pytest.approx(pole_compliance(SPHERE), rel=0.01)
+    assert give / SMALL_N == pytest.approx(pole_compliance(SPHERE), rel=3e-3)  # measured 1e-3
 
 
 def test_the_solver_squashes_to_a_third_of_its_height_as_the_chain_does(chain_squash):
     solver = extrapolated(*(squash(net_pole_distance(SPHERE, nodes, LOADS_N)) for nodes in (48, 96)))
 
     assert chain_squash[-1] > 0.3 * 2 * SPHERE.R
-    assert solver == pytest.approx(chain_squash, rel=0.01)
+    assert solver == pytest.approx(chain_squash, rel=2e-3)  # measured 5e-4
+
+
+def test_the_mesh_of_the_robot_file_is_right_to_one_percent_up_to_a_sixth_and_to_two_at_a_third(chain_squash):
+    solver = squash(net_pole_distance(SPHERE, SPHERE.nodes, LOADS_N))
+
+    assert SPHERE.nodes == 24
+    assert solver[:-1] == pytest.approx(chain_squash[:-1], rel=0.01)  # measured 0.6 %
+    assert solver[-1] == pytest.approx(chain_squash[-1], rel=0.02)  # measured 1.4 %
 
 
 def test_a_stiffer_strip_is_stiffer_in_both():
