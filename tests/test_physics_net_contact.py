@@ -56,9 +56,9 @@ def test_a_standing_sphere_slides_where_friction_is_less_than_the_slope():
 
     run(sample, 0.2, SLOPE, method=method_of(0.5, 4.5e-6))
 
-    along = 0.5 * 9.81 * (np.sin(np.radians(10)) - 0.1 * np.cos(np.radians(10))) * 0.2**2
-    assert start - centre(sample.net, sample.m.now.x, 0) == pytest.approx(along, rel=0.9)
-    assert start - centre(sample.net, sample.m.now.x, 0) > 1e-3
+    a, d = 9.81 * (np.sin(np.radians(10)) - 0.1 * np.cos(np.radians(10))), DAMPED.drag
+    along = a * (0.2 / d - (1.0 - np.exp(-0.2 * d)) / d**2)  # pulled by a, held back by drag
+    assert start - centre(sample.net, sample.m.now.x, 0) == pytest.approx(along, rel=0.05)  # it rocks a little
 
 
 def pressed() -> Sample:

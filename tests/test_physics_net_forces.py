@@ -1,7 +1,5 @@
 """Forces of strips, coils and ground are the gradients of their energies, and the tangents theirs."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from scipy.linalg import eigh
@@ -9,7 +7,7 @@ from scipy.linalg import eigh
 from hil_sim.physics.net.beam import beam_forces, beam_tangent
 from hil_sim.physics.net.ground import BORNE, PUSH, PUSH_BEFORE, ground_forces, ground_tangent
 from hil_sim.physics.net.pulls import LENGTH, coil_forces, coil_tangent
-from tests.net_samples import COIL_FREE, COIL_RATE, GROUND, NUMBERS, PLANE, dense, hoop, moved, placed, shaken, sphere
+from tests.net_samples import COIL_FREE, COIL_RATE, NUMBERS, PLANE, dense, hoop, moved, placed, shaken, sphere
 
 H = 1e-6  # [m, rad] of the finite differences
 
@@ -128,4 +126,3 @@ def test_the_strip_is_stiffer_edgewise_than_flat_as_its_numbers_say():
     assert stiff[4] == pytest.approx(20.0 * soft[4])
     assert stiff[5] == soft[5] == NUMBERS.EI
     assert sphere(twist=0.5).stiffness[3] == pytest.approx(0.5 * NUMBERS.EI)
-    assert sphere(ground=replace(GROUND, mu=0.2)).mu == 0.2

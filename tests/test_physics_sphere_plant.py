@@ -50,9 +50,8 @@ def test_one_step_rolls_by_an_eighth_of_the_circumference(step):
 def test_the_energies_of_a_step_balance_to_one_percent_of_what_the_coils_gave(step):
     balance = step.energies()
 
-    turned_over = abs(balance["coils_j"]) + balance["bending_loss_j"]
-    assert turned_over > 5e-4
-    assert abs(balance["numerical_j"]) < 0.01 * turned_over
+    assert balance["coils_j"] > 5e-4
+    assert abs(balance["numerical_j"]) < 0.01 * balance["coils_j"]
 
 
 def test_a_step_repeats_bit_by_bit(step):
@@ -72,14 +71,14 @@ def test_without_power_nothing_moves():
     assert body.observe()["peak_coil_force_n"] < 0.01  # some are stretched a little where the body sags
 
 
-def test_a_mirrored_start_rolls_the_mirrored_way():
+def test_a_mirrored_start_rolls_the_mirrored_way(step):
     body = plant(start__yaw_deg=180.0)
     heat(body, ["A00m1"], 0.8, BOOST_W)
     heat(body, ["A00m1"], 1.2, HOLD_W)
     heat(body, ["A10m1"], 0.8, BOOST_W)
     heat(body, ["A10m1"], 1.7, HOLD_W)
 
-    assert body.observe()["travel_mm"] == pytest.approx(-rolled().observe()["travel_mm"], rel=1e-3)
+    assert body.observe()["travel_mm"] == pytest.approx(-step.observe()["travel_mm"], rel=1e-3)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -94,10 +93,10 @@ def test_from_any_attitude_it_comes_to_rest_on_some_side(seed):
 
 
 def test_the_accelerometer_of_a_resting_core_reads_gravity_in_its_own_axes():
-    body = plant("sphere-a", start__pitch_deg=90.0)
+    body = heat(plant("sphere-a", start__pitch_deg=90.0), [], 0.5, 0.0)
 
-    assert body.specific_force() == pytest.approx([-9.81, 0.0, 0.0], abs=0.5)
-    assert body.angular_rate() == pytest.approx([0.0, 0.0, 0.0], abs=0.1)
+    assert body.specific_force() == pytest.approx([-9.81, 0.0, 0.0], abs=0.05)
+    assert body.angular_rate() == pytest.approx([0.0, 0.0, 0.0], abs=1e-3)
 
 
 def test_the_snapshot_holds_three_closed_hoops_and_where_each_coil_pulls():
