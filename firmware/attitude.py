@@ -11,6 +11,7 @@ The sensor guards nothing: a robot that lost it goes on, except a program that a
 from array import array
 
 from protocol.labels import direction
+from protocol.program import NO_COIL
 
 UNIT = 1 << 14  # length of `down`
 FINE = 6  # more bits than that in the sums
@@ -21,7 +22,6 @@ LEAST, MOST = 448 * 448, 576 * 576  # one g within an eighth, squared
 SILENT_MS = 100  # without a new sample: lost
 SAME_MAX = 50  # samples that agree in every bit: stuck; the noise of a sound sensor moves the last bits of each
 AGAIN_MS = 1000  # between two attempts to start a lost sensor
-NO_COIL = 255
 # atan(2**-i) in thousandths of a degree, and 2**14 times the length that all these turns together gain
 ARCS = (45000, 26565, 14036, 7125, 3576, 1790, 895, 448, 224, 112, 56, 28, 14)
 GAIN = 26_981
