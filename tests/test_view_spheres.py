@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from hil_sim.robotfile import load
+from hil_sim.sphere import SpherePlant
 from host.errors import BadRequest
 from host.view import draw_film, draw_jump, draw_run
 from host.view.camera import distance, on_paper, plumb, silhouette
@@ -30,6 +32,15 @@ def scene():
     sphere = RollingSphere()
     sphere.t_s = 3.4
     return sphere.snapshot()
+
+
+def test_the_made_up_sphere_tells_what_that_of_the_bench_tells(scene):
+    seen = SpherePlant(load("sphere-b")).snapshot()
+
+    assert set(scene) == set(seen)
+    assert set(scene["coils"]) == set(seen["coils"])
+    assert set(scene["coils"]["A100"]) - {"duty"} == set(seen["coils"]["A100"])  # which the bench knows
+    assert set(scene["energy_j"]) == set(seen["energy_j"])
 
 
 def test_travel_height_and_slope_are_true_to_scale_on_paper():
