@@ -180,7 +180,8 @@ class SpherePlant:
     def energies(self) -> dict[str, float]:
         """Return what the body holds and what went in and out since the start [J]; `numerical_j` closes the balance.
 
-        Coils, tilting and ground give (the ground mostly takes), bending and air lose.
+        Coils, tilting and ground give (the ground mostly takes), bending and air lose. What strips that touch each
+        other or the core store meanwhile is in `numerical_j` too.
         """
         tally = self._motion.tally
         given = {"coils_j": COIL_WORK, "tilt_j": TILT_WORK, "ground_j": GROUND_WORK}

@@ -1,7 +1,8 @@
 r"""The highest flight of a body: when it left the ground, how fast, and which elastic energy was let go for it.
 
-Fed once in every turn of body and coils, 0.1 ms apart in a snap. Take-off is the last turn in which anything touches;
-what was released is the elastic energy at its greatest in the last 50 to 100 ms before, less that at take-off,
+Fed with every turn of body and coils of a ring, every step of a sphere, 0.1 ms apart in a snap. Take-off is the last
+time that anything touches; what was released is the elastic energy at its greatest in the last 50 to 100 ms before,
+less that at take-off,
 
 .. math::  E_r = \max_{t_0 - \tau < t \le t_0} U(t) - U(t_0), \qquad E_l = E_r - m g (h - z_r)                  (J1)
 

@@ -4,9 +4,10 @@ r"""Strips against each other: two elements that come nearer than the thickness 
 
 with the distance d of their chords and the thickness w; no friction. Elements that are near each other in the round
 body, along a hoop or round a crossing, do not count. What may come near within a step is listed before it, from the
-greatest speed of a node, so that nothing passes through unseen; in most steps that is nothing. The stiffness would
-reach across the pattern of the equations, so Newton's method gets a bound of it on the diagonal: slower there, and
-never wrong. ASSUMED: w = 1 mm, a strip of 0.2 mm with crimps. Checked in tests/test_physics_net_contact.py.
+greatest speed of a node at its begin; what a step adds to that speed is left out, so two strips could pass unseen only
+if it carried them across each other at once. In most steps nothing is listed. The stiffness would reach across the
+pattern of the equations, so Newton's method gets a bound of it on the diagonal: slower there, to the same end.
+ASSUMED: w = 1 mm, a strip of 0.2 mm with crimps. Checked in tests/test_physics_net_contact.py.
 """
 
 import numpy as np

@@ -3,7 +3,7 @@ r"""Factors and solves a sparse symmetric matrix of six-by-six blocks along the 
 Right-looking block Cholesky, M = R^T R (standard result). Of column p with diagonal block D = L L^T and lower blocks
 A_a of the bodies a that p still meets:
 
-.. math::   R_{pp} = L^T, \qquad R_{pa} = L^{-1} A_a^T, \qquad M_{ab} \leftarrow M_{ab} - R_{pa}^T R_{pb}        (N1)
+.. math::   R_{pp} = L^T, \qquad R_{pa} = L^{-1} A_a^T, \qquad M_{ab} \leftarrow M_{ab} - R_{pa}^T R_{pb}        (L1)
 
 R_pa takes the place of A_a, and the inverse of L that of the lower triangle of D. All loops are of length six or less
 and run along the rows of blocks, nothing is allocated, and the sums are the same in the same order each time. The
@@ -90,7 +90,7 @@ def invert(blocks: Array, s: int) -> bool:
 
 @lean
 def scale(blocks: Array, diagonal: int, end: int) -> None:
-    """Replace each block below the diagonal of a column by its R_pa, equation (N1)."""
+    """Replace each block below the diagonal of a column by its R_pa, equation (L1)."""
     if blocks.shape[1] != 6 or blocks.shape[2] != 6:
         return
     for s in range(diagonal + 1, end):

@@ -2,7 +2,7 @@ r"""Contact of the strips' edges with the ground: pushed out along its normal, h
 
 .. math::
     n = \max(0, k_n d - c(d) \, \dot p \cdot N), \qquad
-    t = (1 - N N^T) [-k_n (p - p_a) - c(d) \, \dot p], \quad |t| \le \mu n                                         (G1)
+    t = (1 - N N^T) [-k_n (p - p_a) - c(d) \, \dot p], \quad |t| \le \mu n                                         (G2)
 
 for a point p = x + R rho that lies d > 0 deep under the surface of normal N. The anchor p_a is set where the point
 touches down and moves only while the point slips, so that |t| = mu n (return mapping): what stands, stands, and does
@@ -31,7 +31,7 @@ DEPTH_RAMP = 1e-5  # [m] ASSUMED: numerical, less than what a standing body sink
 
 @lean
 def ground_forces(net: Net, terrain: Terrain, x: Array, R: Array, v: Array, touch: Array, f: Array) -> None:
-    """Add the pushes (G1) to f, and note them in touch [N]."""
+    """Add the pushes (G2) to f, and note them in touch [N]."""
     for k in range(net.feet.size):
         body = net.feet[k]
         for p in range(3):

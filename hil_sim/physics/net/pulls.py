@@ -9,8 +9,8 @@ r"""Coils between two bodies: pulls from lengths at frozen phase, and their exac
 
 The near end is fixed to its body at rho from its centre, the far end to the middle of a node. Damping acts only while
 the coil is taut and grows from zero, so that the force is continuous; below its solid height a coil pushes a little
-(see `spring`). The near body's spin adds the second derivative of its arm. Derived here; held against finite
-differences in tests/test_physics_net_forces.py.
+(see `spring`). The near body's spin adds the second derivative of its arm. The tangent leaves out the growth of the
+damping, as (P2) does. Derived here; held against finite differences in tests/test_physics_net_forces.py.
 """
 
 import numpy as np
@@ -20,19 +20,8 @@ from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.net.mesh import Net
 
 # Rows of the scratch `coils`: length, force, tangent, unit vector, arm; the frozen coil; length and force before.
-LENGTH, PULL, RATE, UNIT, ARM, SOFT, FREE, SOLID, HARD, LENGTH_BEFORE, PULL_BEFORE = (
-    0,
-    1,
-    2,
-    3,
-    6,
-    9,
-    10,
-    11,
-    12,
-    13,
-    14,
-)
+LENGTH, PULL, RATE, UNIT, ARM = 0, 1, 2, 3, 6
+SOFT, FREE, SOLID, HARD, LENGTH_BEFORE, PULL_BEFORE = range(9, 15)
 COIL_ROWS = 15
 DAMPING_RAMP = 5e-5  # [m] ASSUMED: numerical, short against the stretch of a hot coil that pulls
 
