@@ -20,7 +20,8 @@ from hil_sim.physics.compiled import bound
 from hil_sim.physics.gauge import centre
 from hil_sim.physics.motion import begin, march
 from hil_sim.physics.ring import ring_of, round_pose
-from hil_sim.physics.state import STEP, method_of, motion_of
+from hil_sim.physics.state import method_of, motion_of
+from hil_sim.physics.tally import STEP
 from hil_sim.robotfile import load
 
 N, R, MASS, EI = 32, 0.02, 1.6e-3, 0.92e-5

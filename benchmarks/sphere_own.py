@@ -14,8 +14,9 @@ from hil_sim.physics.net.gauge import centre, rise_rate
 from hil_sim.physics.net.mesh import SPHERE, Net, net_of, node_at
 from hil_sim.physics.net.motion import begin, march
 from hil_sim.physics.net.pulls import FREE, LENGTH, LENGTH_BEFORE, SOFT, measure
-from hil_sim.physics.net.state import ITERATIONS, STEPS, Motion, motion_of
+from hil_sim.physics.net.state import Motion, motion_of
 from hil_sim.physics.state import method_of
+from hil_sim.physics.tally import ITERATIONS, STEPS
 from hil_sim.physics.terrain import terrain_of
 from tests.net_rest import BOTTOM, TOP, NetRest
 

@@ -11,39 +11,23 @@ file), as an operator tilts the table under a robot that has taken hold: a round
     plant.observe()["travel_mm"]
 """
 
-from math import degrees, inf
+from math import degrees
 from typing import Any
 
 import numpy as np
 
+from hil_sim.coilbody import CoilBody
 from hil_sim.physics import body, coil
 from hil_sim.physics.bodies import StartNumbers
 from hil_sim.physics.coilset import coils_of, cold
-from hil_sim.physics.compiled import Array, bound, prepare
+from hil_sim.physics.compiled import Array, prepare
 from hil_sim.physics.contact import crossings
 from hil_sim.physics.flight import jump_of
 from hil_sim.physics.gauge import centre, rim_energy
 from hil_sim.physics.ring import ring_of, round_pose
 from hil_sim.physics.spokes import LENGTH, LENGTH_BEFORE, PULL
-from hil_sim.physics.state import (
-    APEX,
-    BEND_LOSS,
-    CLEARANCE,
-    COIL_WORK,
-    DRAG_LOSS,
-    GROUND_WORK,
-    ITERATIONS,
-    PEAK_FORCE,
-    PEAK_T,
-    REJECTED,
-    STEP,
-    STEPS,
-    TILT_WORK,
-    TIME,
-    TURN,
-    method_of,
-    motion_of,
-)
+from hil_sim.physics.state import method_of, motion_of
+from hil_sim.physics.tally import APEX, CLEARANCE, PEAK_FORCE, PEAK_T, STEP, TIME, TURN
 from hil_sim.physics.terrain import profile
 from hil_sim.robotfile import RobotFile
 
@@ -51,7 +35,7 @@ SEEN = 10.0  # radii of the ground on either side that a snapshot shows
 SETTLING_DRAG = 20.0  # [1/s] ASSUMED: numerical, the ring is at rest within its settle_s of 1 s
 
 
-class RingPlant:
+class RingPlant(CoilBody):
     """Coils, ring and ground of one robot, at rest at time 0; a function of the powers given to it and nothing else."""
 
     def __init__(self, robot: RobotFile, seed: int = 0, rho: float = 0.8, tolerance: float | None = None) -> None:
@@ -60,49 +44,28 @@ class RingPlant:
         if numbers is None or not isinstance(start, StartNumbers):
             raise ValueError(f"{robot.name} is no ring but a {robot.kind}")
         ground, count = robot.ground, len(robot.labels)
-        self.labels = list(robot.labels)
+        super().__init__(robot.labels, ground)
         self._ring = ring_of(numbers, ground, count, seed)
-        self._world = body.World(ground.gravity, ground.slope, inf, abs(ground.slope) / ground.tilt_rate)
-        self._tilt_after, self._taken_hold = ground.tilt_after, False
         self._method = method_of(rho, tolerance or robot.tolerance)
         R = self._radius = numbers.R
         self._motion = motion_of(self._ring, round_pose(self._ring, R, R, start.turn))
+        self._tally = self._motion.tally
         self._motion.spokes[[LENGTH, LENGTH_BEFORE]] = R - numbers.attach
         coils = coils_of(robot.coil, count, ground.T_amb)
         self._coils = body.packed(coils)
         self._state = cold(coils, self._motion.spokes[LENGTH])
         coil.measure(self._state, self._motion.spokes[LENGTH], coils)
         self._settle(start.settle)
-        self._power = np.zeros(count)
-        self._parts = (self._ring, self._coils, self._state, self._world, self._method, self._motion)
-        self._advance = bound(body.advance, *self._parts, self._power, 0.0)
+        self._begin(body.advance, self._ring, self._coils, self._state, self._world, self._method, self._motion)
         self._weight = float(self._ring.mass[:-2:2].sum()) * ground.gravity
         self._start = centre(self._ring, self._motion.now[0])
-        self._stored_at_start = sum(self._stored().values())
         self.observe()  # no machine code is left to be loaded later
-
-    @property
-    def temperature(self) -> Array:
-        """Temperatures of the coils [degC]."""
-        return self._state.T
-
-    @property
-    def resistance(self) -> Array:
-        """Resistances of the coils [ohm]."""
-        return self._state.R
 
     @property
     def force(self) -> Array:
         """Pulls of the coils [N]."""
         pulls: Array = self._motion.spokes[PULL]
         return pulls
-
-    def advance(self, duration_us: int, coil_power_w: Array) -> None:
-        """Let time pass with the mean electrical power of each coil."""
-        self._power[:] = coil_power_w
-        if not self._taken_hold and self._power.any():
-            self._take_hold()
-        self._advance(*self._parts, self._power, duration_us * 1e-6)
 
     def observe(self) -> dict[str, Any]:
         """Return what a motion capture system and a thermal camera would say."""
@@ -128,43 +91,15 @@ class RingPlant:
         hub, angle = (1e3 * q[-3:-1]).tolist(), float(q[-1])
         turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
         ends = (1e3 * (q[-3:-1, None] + turn @ ring.arms)).T.tolist()
-        coils = {
-            label: {"degc": degc, "force_n": force, "from": start, "to": nodes[foot]}
-            for label, degc, force, start, foot in zip(
-                self.labels, self._state.T.tolist(), self.force.tolist(), ends, ring.feet, strict=True
-            )
-        }
-        t = float(self._motion.tally[TIME])
-        gx, gy = body.gravity(self._world, t)
-        slope_deg = degrees(np.arctan2(-gx, -gy)) if gy else 0.0
         return {
-            "t_s": t,
+            "t_s": float(self._tally[TIME]),
             "hub": [*hub, angle],
             "nodes": nodes,
-            "coils": coils,
-            "slope_deg": slope_deg,
+            "coils": self._coils_seen(ends, [nodes[foot] for foot in ring.feet]),
+            "slope_deg": self._slope_deg(),
             "energy_j": {name.removesuffix("_j"): energy for name, energy in self._stored().items()},
             "terrain_mm": [[1e3 * along, 1e3 * up] for along, up in profile(ring.terrain, q[-3], SEEN * self._radius)],
         }
-
-    def energies(self) -> dict[str, float]:
-        """Return what the body holds and what went in and out since the start [J]; `numerical_j` closes the balance.
-
-        Coils, tilting and ground give (the ground mostly takes), bending and air lose.
-        """
-        tally = self._motion.tally
-        given = {"coils_j": COIL_WORK, "tilt_j": TILT_WORK, "ground_j": GROUND_WORK}
-        lost = {"bending_loss_j": BEND_LOSS, "air_loss_j": DRAG_LOSS}
-        stored = self._stored()
-        balance = {name: float(tally[row]) for name, row in (given | lost).items()}
-        change = sum(stored.values()) - self._stored_at_start
-        gone = sum(balance[name] for name in given) - sum(balance[name] for name in lost)
-        return {**stored, **balance, "numerical_j": gone - change}
-
-    def effort(self) -> dict[str, int]:
-        """Return how many steps, rejected steps and Newton iterations it took so far."""
-        tally = self._motion.tally
-        return {"steps": int(tally[STEPS]), "rejected": int(tally[REJECTED]), "iterations": int(tally[ITERATIONS])}
 
     def _settle(self, seconds: float) -> None:
         """Come to rest on the level plane in thick air, then begin to count.
@@ -182,16 +117,10 @@ class RingPlant:
         self._motion.flight[:] = 0.0
         tally[[STEP, TURN]] = keep
 
-    def _take_hold(self) -> None:
-        """Let the plane begin to tilt a moment after now, when a coil is heated for the first time."""
-        self._taken_hold = True
-        self._world = self._world._replace(tilt_from=float(self._motion.tally[TIME]) + self._tilt_after)
-        self._parts = (*self._parts[:3], self._world, *self._parts[4:])
-
     def _stored(self) -> dict[str, float]:
         """Return the mechanical energy of rim and hub [J]; that in the coils belongs to the coils."""
         now, ring = self._motion.now, self._ring
-        gx, gy = body.gravity(self._world, self._motion.tally[TIME])
+        gx, gy = self._gravity()
         x, y = centre(ring, now[0])
         weighed = ring.mass[:-2:2].sum()
         return {

@@ -9,17 +9,18 @@ first time, and is tilted a moment later, as for the ring. `rotation_deg` is pos
     plant.observe()["travel_mm"], plant.attitude()
 """
 
-from math import degrees, inf
+from math import degrees
 from typing import Any
 
 import numpy as np
 
+from hil_sim.coilbody import CoilBody
 from hil_sim.directions import direction
 from hil_sim.physics import coil
 from hil_sim.physics.bodies import Attitude
-from hil_sim.physics.body import World, gravity, packed
+from hil_sim.physics.body import gravity, packed
 from hil_sim.physics.coilset import coils_of, cold
-from hil_sim.physics.compiled import Array, bound, prepare
+from hil_sim.physics.compiled import Array, prepare
 from hil_sim.physics.flight import jump_of, no_flight
 from hil_sim.physics.net import body
 from hil_sim.physics.net.apart import nearest
@@ -28,27 +29,9 @@ from hil_sim.physics.net.mesh import SPHERE, net_of, unit
 from hil_sim.physics.net.motion import begin
 from hil_sim.physics.net.pulls import ARM, LENGTH, LENGTH_BEFORE, PULL, freeze, measure
 from hil_sim.physics.net.rotation import matrix, quaternion
-from hil_sim.physics.net.state import (
-    APEX,
-    BEND_LOSS,
-    CLEARANCE,
-    COIL_WORK,
-    CONTACTS,
-    DRAG_LOSS,
-    ELASTIC,
-    GROUND_WORK,
-    ITERATIONS,
-    PEAK_FORCE,
-    PEAK_T,
-    REJECTED,
-    STEP,
-    STEPS,
-    TILT_WORK,
-    TIME,
-    TURN,
-    motion_of,
-)
+from hil_sim.physics.net.state import motion_of
 from hil_sim.physics.state import method_of
+from hil_sim.physics.tally import APEX, CLEARANCE, CONTACTS, ELASTIC, PEAK_FORCE, PEAK_T, STEP, TIME, TURN
 from hil_sim.physics.terrain import profile, terrain_of
 from hil_sim.robotfile import RobotFile
 
@@ -57,7 +40,7 @@ SHARE = 0.01  # of the tolerated error, left to Newton's method
 SETTLING_DRAG = 20.0  # [1/s] ASSUMED: numerical, the body is at rest within its settle_s
 
 
-class SpherePlant:
+class SpherePlant(CoilBody):
     """Coils, hoops, core and ground of one robot, at rest at time 0; a function of the powers given to it."""
 
     def __init__(self, robot: RobotFile, seed: int = 0, rho: float = 0.5, tolerance: float | None = None) -> None:
@@ -65,17 +48,16 @@ class SpherePlant:
         assert isinstance(robot.start, Attitude)
         prepare(body.advance, coil.advance)
         ground, count, numbers = robot.ground, len(robot.labels), robot.sphere
-        self.labels = list(robot.labels)
+        super().__init__(robot.labels, ground)
         spokes = [direction(label) for label in self.labels[: count - len(robot.jumps)]]
         chords = [(direction(a), direction(b)) for a, b in robot.jumps]
         self._compass = dict(zip(self.labels, (unit(each) for each in spokes), strict=False))
         self._radius = numbers.R
         self._net = net_of(numbers, ground, SPHERE, spokes, chords)
         self._terrain = terrain_of(ground, seed, 2.0 * numbers.R)
-        self._world = World(ground.gravity, ground.slope, inf, abs(ground.slope) / ground.tilt_rate)
-        self._tilt_after, self._taken_hold = ground.tilt_after, False
         self._method = method_of(rho, tolerance or robot.tolerance, share=SHARE)
         self._motion = motion_of(self._net, *self._placed(numbers.R, robot.start))
+        self._tally = self._motion.tally
         self._flight = no_flight()
         self._weight = ground.gravity * float(self._net.mass.sum())
         coils = coils_of(robot.coil, count, ground.T_amb)
@@ -86,37 +68,18 @@ class SpherePlant:
         coil.measure(self._state, self._motion.coils[LENGTH], coils)
         self._motion.coils[LENGTH_BEFORE] = self._motion.coils[LENGTH]
         self._settle(robot.start.settle)
-        self._power = np.zeros(count)
-        self._parts = (
-            self._net, self._terrain, self._coils, self._state, self._world, self._method, self._motion, self._flight,
+        self._begin(
+            body.advance, self._net, self._terrain, self._coils, self._state, self._world, self._method, self._motion,
+            self._flight,
         )  # fmt: skip
-        self._advance = bound(body.advance, *self._parts, self._power, 0.0)
         self._start = self._centre()
-        self._stored_at_start = sum(self._stored().values())
         self.observe()  # no machine code is left to be loaded later
-
-    @property
-    def temperature(self) -> Array:
-        """Temperatures of the coils [degC]."""
-        return self._state.T
-
-    @property
-    def resistance(self) -> Array:
-        """Resistances of the coils [ohm]."""
-        return self._state.R
 
     @property
     def force(self) -> Array:
         """Pulls of the coils [N]."""
         pulls: Array = self._motion.coils[PULL]
         return pulls
-
-    def advance(self, duration_us: int, coil_power_w: Array) -> None:
-        """Let time pass with the mean electrical power of each coil."""
-        self._power[:] = coil_power_w
-        if not self._taken_hold and self._power.any():
-            self._take_hold()
-        self._advance(*self._parts, self._power, duration_us * 1e-6)
 
     def attitude(self) -> tuple[float, float, float, float]:
         """Return the unit quaternion (w, x, y, z) that turns the round body's axes into those of the bench."""
@@ -158,44 +121,18 @@ class SpherePlant:
         x, net, coils = self._motion.now.x, self._net, self._motion.coils
         nodes, near = (1e3 * x).tolist(), profile(self._terrain, x[-1, 0], SEEN * self._radius)
         starts = (1e3 * (x[net.near] + coils[ARM : ARM + 3].T)).tolist()
-        gx, gz = self._gravity()
         return {
-            "t_s": float(self._motion.tally[TIME]),
-            "slope_deg": degrees(np.arctan2(-gx, -gz)) if gz else 0.0,
+            "t_s": float(self._tally[TIME]),
+            "slope_deg": self._slope_deg(),
             "hub": nodes[-1],
             "attitude": list(self.attitude()),
             "nodes": nodes[:-1],
             "hoops": net.hoops.tolist(),
             "strip_mm": 2e3 * float(abs(net.offsets).max(axis=0).min()),
-            "coils": {
-                label: {"degc": degc, "force_n": force, "from": start, "to": nodes[far]}
-                for label, degc, force, start, far in zip(
-                    self.labels, self._state.T.tolist(), self.force.tolist(), starts, net.far, strict=True
-                )
-            },
+            "coils": self._coils_seen(starts, [nodes[far] for far in net.far]),
             "energy_j": {name.removesuffix("_j"): value for name, value in self._stored().items()},
             "terrain_mm": [[1e3 * along, 1e3 * up] for along, up in near],
         }
-
-    def energies(self) -> dict[str, float]:
-        """Return what the body holds and what went in and out since the start [J]; `numerical_j` closes the balance.
-
-        Coils, tilting and ground give (the ground mostly takes), bending and air lose. What strips that touch each
-        other or the core store meanwhile is in `numerical_j` too.
-        """
-        tally = self._motion.tally
-        given = {"coils_j": COIL_WORK, "tilt_j": TILT_WORK, "ground_j": GROUND_WORK}
-        lost = {"bending_loss_j": BEND_LOSS, "air_loss_j": DRAG_LOSS}
-        stored = self._stored()
-        balance = {name: float(tally[row]) for name, row in (given | lost).items()}
-        change = sum(stored.values()) - self._stored_at_start
-        gone = sum(balance[name] for name in given) - sum(balance[name] for name in lost)
-        return {**stored, **balance, "numerical_j": gone - change}
-
-    def effort(self) -> dict[str, int]:
-        """Return how many steps, rejected steps and Newton iterations it took so far."""
-        tally = self._motion.tally
-        return {"steps": int(tally[STEPS]), "rejected": int(tally[REJECTED]), "iterations": int(tally[ITERATIONS])}
 
     def _placed(self, R: float, start: Attitude) -> tuple[Array, Array]:
         """Return places and rotation of the round body, turned, its lowest point on the ground."""
@@ -220,16 +157,6 @@ class SpherePlant:
         self._flight[:] = no_flight()
         body.watch(self._net, self._state, m)
         m.tally[TURN] = 0.0
-
-    def _take_hold(self) -> None:
-        """Let the plane begin to tilt a moment after now, when a coil is heated for the first time."""
-        self._taken_hold = True
-        self._world = self._world._replace(tilt_from=float(self._motion.tally[TIME]) + self._tilt_after)
-        self._parts = (*self._parts[:4], self._world, *self._parts[5:])
-
-    def _gravity(self) -> tuple[float, float]:
-        along: tuple[float, float] = gravity(self._world, float(self._motion.tally[TIME]))
-        return along
 
     def _centre(self) -> tuple[float, float, float]:
         x = self._motion.now.x

@@ -12,8 +12,9 @@ from hil_sim.physics.net.beam import beam_forces, beam_tangent
 from hil_sim.physics.net.mesh import SPHERE, Net, net_of, slot
 from hil_sim.physics.net.motion import begin, march
 from hil_sim.physics.net.pulls import FREE, HARD, SOFT, SOLID
-from hil_sim.physics.net.state import STEP, Motion, motion_of
+from hil_sim.physics.net.state import Motion, motion_of
 from hil_sim.physics.state import Method, method_of
+from hil_sim.physics.tally import STEP
 from hil_sim.physics.terrain import Terrain
 
 NUMBERS = SphereNumbers(

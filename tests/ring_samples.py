@@ -9,7 +9,8 @@ from hil_sim.physics.bodies import GroundNumbers, RingNumbers
 from hil_sim.physics.motion import begin, march
 from hil_sim.physics.ring import ring_of, round_pose
 from hil_sim.physics.spokes import FREE, SOFT
-from hil_sim.physics.state import STEP, method_of, motion_of
+from hil_sim.physics.state import method_of, motion_of
+from hil_sim.physics.tally import STEP
 from hil_sim.plant import RingPlant
 from hil_sim.robotfile import load
 

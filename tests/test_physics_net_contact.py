@@ -15,8 +15,8 @@ from hil_sim.physics.net.inside import core_forces, core_tangent
 from hil_sim.physics.net.mesh import SPHERE, net_of, node_at
 from hil_sim.physics.net.motion import march
 from hil_sim.physics.net.pulls import FREE, SOFT
-from hil_sim.physics.net.state import CONTACTS, ELASTIC
 from hil_sim.physics.state import method_of
+from hil_sim.physics.tally import CONTACTS, ELASTIC
 from tests.net_samples import FALL, GROUND, NUMBERS, PLANE, Sample, dense, placed, run, sphere, started
 
 DAMPED = replace(NUMBERS, tau_v=3e-3, drag=20.0)

@@ -7,8 +7,8 @@ from hil_sim.physics.flight import no_flight
 from hil_sim.physics.net.gauge import attitude, centre, kinetic
 from hil_sim.physics.net.motion import march
 from hil_sim.physics.net.rotation import matrix, quaternion, straighten
-from hil_sim.physics.net.state import BEND_LOSS, DRAG_LOSS, ELASTIC, STEP
 from hil_sim.physics.state import method_of
+from hil_sim.physics.tally import BEND_LOSS, DRAG_LOSS, ELASTIC, STEP
 from tests.net_samples import PLANE, exponential, placed, ringing, run, sphere, started
 
 HIGH = 1.0  # [m] above the ground

@@ -8,7 +8,8 @@ from hil_sim.physics.gauge import centre, rim_energy
 from hil_sim.physics.motion import begin
 from hil_sim.physics.ring import round_pose
 from hil_sim.physics.spokes import FREE, SOFT
-from hil_sim.physics.state import GROUND_WORK, motion_of
+from hil_sim.physics.state import motion_of
+from hil_sim.physics.tally import GROUND_WORK
 from tests.ring_samples import floating, ring, robot, run
 
 G = 9.81

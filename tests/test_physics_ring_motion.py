@@ -5,7 +5,7 @@ import pytest
 
 from hil_sim.physics.gauge import centre, rim_energy
 from hil_sim.physics.motion import begin
-from hil_sim.physics.state import BEND_LOSS, COIL_WORK, DRAG_LOSS, REJECTED, STEPS
+from hil_sim.physics.tally import BEND_LOSS, COIL_WORK, DRAG_LOSS, REJECTED, STEPS
 from tests.ring_samples import floating, lossless, oval, ring, run, squashed
 
 

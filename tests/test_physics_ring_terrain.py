@@ -8,7 +8,8 @@ from hil_sim.physics.corners import NORMAL as CORNER_NORMAL
 from hil_sim.physics.gauge import centre
 from hil_sim.physics.ring import round_pose
 from hil_sim.physics.spokes import FREE, SOFT
-from hil_sim.physics.state import GROUND_WORK, motion_of
+from hil_sim.physics.state import motion_of
+from hil_sim.physics.tally import GROUND_WORK
 from hil_sim.physics.terrain import Terrain, surface
 from tests.ring_samples import crawl, new_plant, ring, run, take_hold
 

@@ -26,7 +26,8 @@ from hil_sim.physics.gauge import centre, rim_energy, turned
 from hil_sim.physics.motion import march
 from hil_sim.physics.ring import Ring
 from hil_sim.physics.spokes import LENGTH, freeze
-from hil_sim.physics.state import APEX, CLEARANCE, PEAK_T, STEP, TILT_WORK, TIME, TURN, Method, Motion
+from hil_sim.physics.state import Method, Motion
+from hil_sim.physics.tally import APEX, CLEARANCE, PEAK_T, STEP, TILT_WORK, TIME, TURN
 from hil_sim.physics.terrain import surface
 
 COIL_STEP = 1e-3  # [s]

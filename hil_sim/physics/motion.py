@@ -34,7 +34,8 @@ from hil_sim.physics.corners import corner_forces, corner_tangent, settle_corner
 from hil_sim.physics.gauge import bend_loss
 from hil_sim.physics.ring import Ring, rim_forces, rim_tangent
 from hil_sim.physics.spokes import LENGTH, LENGTH_BEFORE, PULL, PULL_BEFORE, spoke_forces, spoke_tangent
-from hil_sim.physics.state import (
+from hil_sim.physics.state import TOLERANCE, Method, Motion
+from hil_sim.physics.tally import (
     BEND_LOSS,
     BEND_RATE,
     COIL_WORK,
@@ -47,9 +48,6 @@ from hil_sim.physics.state import (
     STEP,
     STEPS,
     TIME,
-    TOLERANCE,
-    Method,
-    Motion,
 )
 from hil_sim.physics.touch import leaps, list_pairs, touch_forces, touch_tangent
 

@@ -11,14 +11,9 @@ from hil_sim.physics.corners import CORNER_ROWS
 from hil_sim.physics.flight import no_flight
 from hil_sim.physics.ring import BLOCK_ROWS, RIM_ROWS, Ring
 from hil_sim.physics.spokes import SPOKE_ROWS
+from hil_sim.physics.tally import STEP, TALLIES
 from hil_sim.physics.touch import Pairs, no_pairs
 
-# Entries of `tally`: time and next step [s], counts; work of coils, ground and tilting, losses [J] and their rates [W];
-TIME, STEP, STEPS, REJECTED, ITERATIONS, COIL_WORK, GROUND_WORK, TILT_WORK = range(8)
-BEND_LOSS, DRAG_LOSS, BEND_RATE, DRAG_RATE = range(8, 12)
-# greatest force [N] and temperature [degC] of a coil, height of centre of mass and of lowest point [m], rotation [rad].
-PEAK_FORCE, PEAK_T, APEX, CLEARANCE, TURN = range(12, 17)
-TALLIES = 17
 STEP_MAX = 5e-3  # [s]
 TOLERANCE = 2e-6  # [m]
 

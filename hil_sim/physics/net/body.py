@@ -15,8 +15,9 @@ from hil_sim.physics.net.gauge import attitude, centre, lowest
 from hil_sim.physics.net.mesh import Net
 from hil_sim.physics.net.motion import march
 from hil_sim.physics.net.pulls import LENGTH, freeze
-from hil_sim.physics.net.state import APEX, CLEARANCE, PEAK_T, STEP, TILT_WORK, TIME, TURN, Motion
+from hil_sim.physics.net.state import Motion
 from hil_sim.physics.state import Method
+from hil_sim.physics.tally import APEX, CLEARANCE, PEAK_T, STEP, TILT_WORK, TIME, TURN
 from hil_sim.physics.terrain import Terrain
 
 

@@ -36,7 +36,9 @@ from hil_sim.physics.net.inside import core_forces, core_tangent
 from hil_sim.physics.net.mesh import Net
 from hil_sim.physics.net.pulls import LENGTH, LENGTH_BEFORE, PULL, PULL_BEFORE, coil_forces, coil_tangent
 from hil_sim.physics.net.rotation import straighten, turned
-from hil_sim.physics.net.state import (
+from hil_sim.physics.net.state import Motion, State
+from hil_sim.physics.state import Method
+from hil_sim.physics.tally import (
     BEND_LOSS,
     BEND_RATE,
     COIL_WORK,
@@ -53,10 +55,7 @@ from hil_sim.physics.net.state import (
     STEP,
     STEPS,
     TIME,
-    Motion,
-    State,
 )
-from hil_sim.physics.state import Method
 from hil_sim.physics.terrain import Terrain
 
 STEP_MIN = 1e-5  # [s] a shorter one is taken as it is: mass alone then makes the system definite

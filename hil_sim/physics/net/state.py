@@ -11,14 +11,7 @@ from hil_sim.physics.net.ground import TOUCH_COLUMNS
 from hil_sim.physics.net.inside import NEAR_COLUMNS
 from hil_sim.physics.net.mesh import Ints, Net
 from hil_sim.physics.net.pulls import COIL_ROWS
-
-# Entries of `tally`: time and next step [s], counts; work of coils, ground and tilting, losses [J] and their rates [W];
-TIME, STEP, STEPS, REJECTED, ITERATIONS, COIL_WORK, GROUND_WORK, TILT_WORK = range(8)
-BEND_LOSS, DRAG_LOSS, BEND_RATE, DRAG_RATE, ELASTIC = range(8, 13)
-# greatest force [N] and temperature [degC] of a coil, height of centre of mass and of lowest point [m], points that
-# touch, rotation about the sideways axis of the plane [rad]; elastic energy [J] and loss [W] of the step being solved.
-PEAK_FORCE, PEAK_T, APEX, CLEARANCE, CONTACTS, TURN, ELASTIC_NEXT, LOSS_NEXT = range(13, 21)
-TALLIES = 21
+from hil_sim.physics.tally import STEP, TALLIES
 
 
 class State(NamedTuple):
