@@ -12,6 +12,7 @@ from hil_sim.robottexts import TEXTS, is_text, mistakes_in
 
 STANDINGS = ("paper", "read", "derived", "assumed", "fitted")
 FOR_THE_READER = ("derived",)  # a section that is held to the form but not to the table of keys
+INSIDE = ("hub.radius_mm", "hub.attach_mm", "core.radius_mm", "core.attach_mm")  # the shell
 RISING = ("martensite_finish", "martensite_start", "austenite_start", "austenite_finish")
 FROM_ADDRESS = "set by the robot's address"
 
@@ -128,15 +129,24 @@ class Check:
         for key in self.rows:
             entry = self.entries.get(key.name)
             if entry and not key.allows(entry.value):
-                what = f"{key.name} is {entry.value:g}, it must be {key.range}"
-                if entry.source == FROM_ADDRESS:
-                    self.mistakes.append(f"set={key.name}: {what}")
-                else:
-                    self._say(key.name, what)
+                self._wrong(entry, key.range)
+        shell = self.entries.get("shell.radius_mm")
+        for name in INSIDE:
+            entry = self.entries.get(name)
+            if entry and shell and entry.value >= shell.value:
+                self._wrong(entry, f"below shell.radius_mm, {shell.value:g}")
         names = [f"coils.{end}_degc" for end in RISING]
         values = [self.entries[name].value for name in names if name in self.entries]
         if len(values) == len(names) and not values[0] < values[1] <= values[2] < values[3]:
             self._say(names[0], f"the temperatures must rise: {', '.join(names)}")
+
+    def _wrong(self, entry: Entry, allowed: str) -> None:
+        """Note that a number is none that a robot may have, in the file or from the address."""
+        what = f"{entry.name} is {entry.value:g}, it must be {allowed}"
+        if entry.source == FROM_ADDRESS:
+            self.mistakes.append(f"set={entry.name}: {what}")
+        else:
+            self._say(entry.name, what)
 
 
 def kind_of(sections: Mapping[str, dict[str, Any]]) -> str:

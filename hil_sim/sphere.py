@@ -9,7 +9,7 @@ first time, and is tilted a moment later, as for the ring. `rotation_deg` is pos
     plant.observe()["travel_mm"], plant.attitude()
 """
 
-from math import degrees
+from math import degrees, inf, isfinite
 from typing import Any
 
 import numpy as np
@@ -112,7 +112,7 @@ class SpherePlant(CoilBody):
             "attitude": list(self.attitude()),
             "down": self._down(),
             "contacts": int(tally[CONTACTS]),
-            "strip_gap_mm": 1e3 * float(nearest(self._net, self._motion.now.x)),
+            "strip_gap_mm": 1e3 * gap if isfinite(gap := float(nearest(self._net, self._motion.now.x))) else None,
             "jump": jump_of(self._flight, self._weight, self._start[2]),
         }
 
@@ -128,7 +128,7 @@ class SpherePlant(CoilBody):
             "attitude": list(self.attitude()),
             "nodes": nodes[:-1],
             "hoops": net.hoops.tolist(),
-            "strip_mm": 2e3 * float(abs(net.offsets).max(axis=0).min()),
+            "strip_mm": 1e3 * net.width,
             "coils": self._coils_seen(starts, [nodes[far] for far in net.far]),
             "energy_j": {name.removesuffix("_j"): value for name, value in self._stored().items()},
             "terrain_mm": [[1e3 * along, 1e3 * up] for along, up in near],
@@ -154,13 +154,14 @@ class SpherePlant(CoilBody):
         keep = m.tally[[STEP, ELASTIC, CONTACTS]]
         m.tally[:] = 0.0
         m.tally[[STEP, ELASTIC, CONTACTS]] = keep
+        m.tally[APEX] = -inf  # it may rest below the plane, beside a drop
         self._flight[:] = no_flight()
         body.watch(self._net, self._state, m)
         m.tally[TURN] = 0.0
 
     def _centre(self) -> tuple[float, float, float]:
-        x = self._motion.now.x
-        return tuple(float(centre(self._net, x, axis)) for axis in range(3))  # type: ignore[return-value]
+        net, x = self._net, self._motion.now.x
+        return float(centre(net, x, 0)), float(centre(net, x, 1)), float(centre(net, x, 2))
 
     def _down(self) -> str:
         """Return the label of the coil from the core whose direction is nearest to down."""

@@ -109,6 +109,7 @@ def test_the_snapshot_holds_three_closed_hoops_and_where_each_coil_pulls():
         45.0, abs=1.0
     )
     assert seen["strip_mm"] == pytest.approx(6.0)
+    assert plant("sphere-a").snapshot()["strip_mm"] == pytest.approx(10.0)
 
 
 def test_a_step_in_the_ground_stops_the_sphere_that_does_not_climb_it():

@@ -41,6 +41,7 @@ from hil_sim.physics.tally import (
     COIL_WORK,
     DRAG_LOSS,
     DRAG_RATE,
+    FORCED,
     GROUND_WORK,
     ITERATIONS,
     PEAK_FORCE,
@@ -229,6 +230,7 @@ def march(ring: Ring, gx: float, gy: float, method: Method, m: Motion, duration:
             m.tally[REJECTED] += 1.0
             m.tally[STEP] = 0.5 * h
             continue
+        m.tally[FORCED] += 0.0 if solved else 1.0
         accept(ring, m, h)
         left -= h
         growth = min(2.0, 0.9 * (method.tolerance / max(error, 1e-12)) ** (1.0 / 3.0))

@@ -7,9 +7,9 @@ TIME, STEP, STEPS, REJECTED, ITERATIONS, COIL_WORK, GROUND_WORK, TILT_WORK = ran
 BEND_LOSS, DRAG_LOSS, BEND_RATE, DRAG_RATE = range(8, 12)
 # greatest force [N] and temperature [degC] of a coil, height of centre of mass and of lowest point [m], rotation [rad];
 PEAK_FORCE, PEAK_T, APEX, CLEARANCE, TURN = range(12, 17)
-# points that touch, elastic energy [J]; that and the loss [W] of the step being solved.
-CONTACTS, ELASTIC, ELASTIC_NEXT, LOSS_NEXT = range(17, 21)
-TALLIES = 21
+# points that touch, elastic energy [J]; that and the loss [W] of the step being solved; steps taken unsolved.
+CONTACTS, ELASTIC, ELASTIC_NEXT, LOSS_NEXT, FORCED = range(17, 22)
+TALLIES = 22
 GIVEN = {"coils_j": COIL_WORK, "tilt_j": TILT_WORK, "ground_j": GROUND_WORK}
 LOST = {"bending_loss_j": BEND_LOSS, "air_loss_j": DRAG_LOSS}
 
@@ -26,5 +26,6 @@ def balance(tally: Array, stored: dict[str, float], stored_at_start: float) -> d
 
 
 def effort(tally: Array) -> dict[str, int]:
-    """Return how many steps, rejected steps and Newton iterations it took so far."""
-    return {"steps": int(tally[STEPS]), "rejected": int(tally[REJECTED]), "iterations": int(tally[ITERATIONS])}
+    """Return how many steps, rejected steps and Newton iterations it took so far, and how many were unsolved."""
+    counts = {"steps": STEPS, "rejected": REJECTED, "iterations": ITERATIONS, "forced": FORCED}
+    return {name: int(tally[row]) for name, row in counts.items()}

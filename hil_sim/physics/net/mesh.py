@@ -34,6 +34,7 @@ class Net(NamedTuple):
     bodies: int
     mass: Array  # (B,) [kg]
     inertia: Array  # (B,) [kg m2]
+    weight: float  # of all, on the ground of the earth [N]
     drag: float  # [1/s]
     # elements: the earlier and the later of their bodies in the order of elimination
     ends: Ints  # (E, 2)
@@ -90,7 +91,7 @@ def net_of(
     mass, inertia = _masses(p, hoops, count, length)
     feet, offsets = _feet(hoops, circles, p)
     return Net(
-        count + 1, mass, inertia, p.drag,
+        count + 1, mass, inertia, 9.81 * float(mass.sum()), p.drag,
         ends, beams, axes, bow, length, _stiffness(p, length), p.tau_v,
         feet, offsets, ground.k_n, ground.c_n, ground.mu,
         near, far, arms, np.array([place for place, _ in found], dtype=np.int64),

@@ -47,6 +47,7 @@ from hil_sim.physics.tally import (
     DRAG_RATE,
     ELASTIC,
     ELASTIC_NEXT,
+    FORCED,
     GROUND_WORK,
     ITERATIONS,
     LOSS_NEXT,
@@ -60,6 +61,7 @@ from hil_sim.physics.terrain import Terrain
 
 STEP_MIN = 1e-5  # [s] a shorter one is taken as it is: mass alone then makes the system definite
 RESIDUAL = 1e-9  # [N] the least that is asked of Newton's method
+PART = 1e-3  # of the weight, the most that Newton's method may leave
 ITERATIONS_MAX = 12
 CUTS_MAX = 5
 
@@ -155,7 +157,7 @@ def attempt(net: Net, terrain: Terrain, g: tuple[float, float], method: Method, 
         for p in range(6):
             m.change[b, p] = h * m.now.v[b, p] + 0.5 * h * h * m.now.a[b, p]
     list_close(net, m.now.x, m.now.v, h, m.close)
-    enough = max(RESIDUAL, method.share * method.tolerance * ca * net.mass[0])
+    enough = max(RESIDUAL, min(PART * net.weight, method.share * method.tolerance * ca * net.mass[0]))
     before, cuts = np.inf, 0
     for _ in range(ITERATIONS_MAX):
         place(net, m, method, h)
@@ -266,6 +268,7 @@ def march(
             m.tally[REJECTED] += 1.0
             m.tally[STEP] = 0.5 * h
             continue
+        m.tally[FORCED] += 0.0 if solved else 1.0
         accept(net, m, h)
         z, rises = centre(net, m.now.x, 2), rise_rate(net, m.now.v)
         watch_flight(flight, m.tally[TIME], m.tally[CONTACTS] > 0.0, lowest(m), z, rises, m.tally[ELASTIC])
