@@ -54,7 +54,7 @@ def test_a_body_that_comes_apart_ends_the_bench(tmp_path):
 
 def test_a_body_that_is_none_from_the_start_is_a_mistake_of_its_numbers():
     with pytest.raises(RobotFileError, match="circular cannot be built from these numbers"):
-        assemble(parse("circular?set=hub.radius_mm:10000"))
+        assemble(parse("circular?set=coils.turns_count:1"))
 
 
 def test_a_host_is_told_that_the_body_came_apart():
