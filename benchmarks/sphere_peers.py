@@ -24,7 +24,7 @@ G = GROUND.gravity
 RISING_N = tuple(load * BODY.EI / BODY.R**2 for load in (4.5, 9.0, 13.5, 15.3, 16.65))
 JUMP_S, RAMP_S, LOOK_S = 0.04, 1.0, 0.01
 END = 20  # looks that are averaged: the body vibrates a little
-SPRING_N_PER_M, COLD_M, HOT_M = 30.0, BODY.R - BODY.slack, 0.030  # a coil before and after it is heated
+SPRING_N_PER_M, COLD_M, HOT_M = 30.0, BODY.R - 3e-4, 0.030  # a coil before and after it is heated
 IMPLICITFAST, DISCRETE, EULER = (
     getattr(mujoco.mjtIntegrator, f"mjINT_{n}") for n in ("IMPLICITFAST", "DISCRETE", "EULER")
 )

@@ -74,7 +74,6 @@ KEYS = (
     Key("core", "mass_g", "body", "m_core", 1e-3, 0.001, 100000, SPHERE),
     Key("core", "radius_mm", "body", "r_core", 1e-3, 0.01, 10000, SPHERE),
     Key("core", "attach_mm", "body", "attach", 1e-3, 0, 10000, SPHERE),
-    Key("coils", "slack_mm", "body", "slack", 1e-3, 0, 10000),
     Key("coils", "taut_damping_n_s_per_m", "body", "damping", 1.0, 0, 100),
     Key("coils", "wire_diameter_mm", "coil", "d", 1e-3, 0.001, 10),
     Key("coils", "mean_diameter_mm", "coil", "D", 1e-3, 0.001, 100),

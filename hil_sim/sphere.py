@@ -9,7 +9,7 @@ first time, and is tilted a moment later, as for the ring. `rotation_deg` is pos
     plant.observe()["travel_mm"], plant.attitude()
 """
 
-from math import degrees, inf, isfinite
+from math import ceil, degrees, inf, isfinite
 from typing import Any
 
 import numpy as np
@@ -36,6 +36,7 @@ from hil_sim.physics.terrain import profile, terrain_of
 from hil_sim.robotfile import RobotFile
 
 SEEN = 5.0  # radii of ground on either side in a snapshot
+SLICE = 0.25  # [s]
 SHARE = 0.01  # of the tolerated error, left to Newton's method
 SETTLING_DRAG = 20.0  # [1/s] ASSUMED: numerical, the body is at rest within its settle_s
 
@@ -147,9 +148,10 @@ class SpherePlant(CoilBody):
         level, thick = self._world._replace(slope=0.0), self._net._replace(drag=SETTLING_DRAG)
         freeze(self._coils, self._state.xi, m.coils)
         begin(thick, self._terrain, gravity(level, 0.0), m)
-        if seconds > 0.0:
-            parts = (thick, self._terrain, self._coils, self._state, level, self._method, m, self._flight)
-            body.advance(*parts, idle, seconds)
+        parts = (thick, self._terrain, self._coils, self._state, level, self._method, m, self._flight)
+        slices = ceil(seconds / SLICE)  # between two of them an interrupt is felt
+        for _ in range(slices):
+            body.advance(*parts, idle, seconds / slices)
         m.now.v[:] = m.now.a[:] = 0.0
         keep = m.tally[[STEP, ELASTIC, CONTACTS]]
         m.tally[:] = 0.0

@@ -18,7 +18,7 @@ from hil_sim.physics.tally import STEP
 from hil_sim.physics.terrain import Terrain
 
 NUMBERS = SphereNumbers(
-    R=0.045, m=4e-3, m_joints=0.4e-3, m_core=0.6e-3, r_core=3e-3, attach=0.01, slack=0.0, EI=4.5e-5, edgewise=20.0,
+    R=0.045, m=4e-3, m_joints=0.4e-3, m_core=0.6e-3, r_core=3e-3, attach=0.01, EI=4.5e-5, edgewise=20.0,
     twist=1.54, EA=300.0, tau_v=0.0, width=6e-3, damping=0.0, drag=0.0, nodes=16,
 )  # fmt: skip
 GROUND = GroundNumbers(0.0, 1.4, 0.17, 0.6, 500.0, 0.1, 9.81, 25.0)

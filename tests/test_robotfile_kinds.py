@@ -14,7 +14,7 @@ MISTAKES = [
     ("sphere-b", '"B0m1m1"]', '"B10m1"]', "labels: each coil needs its own"),
     ("sphere-b", '"B0m1m1"]', '"C10m1"]', "jump_labels: coils run from each point to the next"),
     ("sphere-b", '["B10m1", "B01m1", "Bm10m1", "B0m1m1"]', '"B10m1"', 'jump_labels: write them as ["A", "B", ...]'),
-    ("circular", "slack_mm", 'jump_labels = ["X"]\nslack_mm', "jump_labels: only a sphere has coils between points"),
+    ("circular", "turns_count", 'jump_labels = ["X"]\nturns_count', "jump_labels: only a sphere has coils between"),
     ("sphere-b", "nodes_count = [24,", "nodes_count = [28,", "at least 8 and at most 128 and a multiple of 8"),
     ("circular", "nodes_count = [32,", "nodes_count = [32.5,", "at least 16 and at most 256 and a whole number"),
     ("sphere-b", "edgewise_ratio", "edgwise_ratio", "unknown key edgwise_ratio; did you mean edgewise_ratio?"),
