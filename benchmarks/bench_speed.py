@@ -1,6 +1,6 @@
 """How much faster than real time the whole bench runs, and where its time goes.
 
-The crawl of the circular robot, script to ground, in this process: CPU seconds of the whole; the share of the body
+The crawl of each robot, script to ground, in this process: CPU seconds of the whole; the share of the body
 (heat and mechanics), timed by itself; and how the rest divides in a profile, which slows all Python alike.
 
     python benchmarks/bench_speed.py
@@ -18,9 +18,9 @@ from host.robot import Robot
 from host.run import Keeper, run
 
 ROOT = Path(__file__).parent.parent
-SCRIPT = ROOT / "gaits" / "circular-crawl.gait"
+ROBOTS = ("circular", "sphere-a", "sphere-b")
 PLACES = (
-    ("body", ("hil_sim/plant.py", "hil_sim/physics/")),
+    ("body", ("hil_sim/plant.py", "hil_sim/sphere.py", "hil_sim/coilbody.py", "hil_sim/physics/")),
     ("chips, wires, supply and clock", ("hil_sim/",)),
     ("firmware", ("firmware/",)),
     ("protocol, both ends", ("protocol/",)),
@@ -28,12 +28,17 @@ PLACES = (
 )
 
 
-def crawl(profile: cProfile.Profile | None = None) -> tuple[float, float]:
+def script(robot: str) -> str:
+    """Return the path of a robot's crawl."""
+    return str(ROOT / "gaits" / f"{robot}-crawl.gait")
+
+
+def crawl(name: str, profile: cProfile.Profile | None = None) -> tuple[float, float]:
     """Run the crawl; return virtual and CPU seconds of the run without its set-up."""
-    link = open_link("sim:circular")
+    link = open_link(f"sim:{name}")
     with Robot(link, Keeper()) as robot:
         robot.connect()
-        compiled = compile_script(load(str(SCRIPT)), robot.profile, ())
+        compiled = compile_script(load(script(name)), robot.profile, ())
         begun_s, cpu_s = link.now_s(), time.process_time()
         if profile:
             profile.enable()
@@ -43,10 +48,10 @@ def crawl(profile: cProfile.Profile | None = None) -> tuple[float, float]:
         return link.now_s() - begun_s, time.process_time() - cpu_s
 
 
-def body_share() -> float:
+def body_share(name: str) -> float:
     """Return the share of the run that the body takes, timed call by call."""
     spent_s = 0.0
-    link = open_link("sim:circular")
+    link = open_link(f"sim:{name}")
     advance = link.bench.plant.advance
 
     def timed(duration_us, coil_power_w):
@@ -59,7 +64,7 @@ def body_share() -> float:
     begun_s = time.perf_counter()
     with Robot(link, Keeper()) as robot:
         robot.connect()
-        run(robot, compile_script(load(str(SCRIPT)), robot.profile, ()).program, lambda stage, done: None)
+        run(robot, compile_script(load(script(name)), robot.profile, ()).program, lambda stage, done: None)
     return spent_s / (time.perf_counter() - begun_s)
 
 
@@ -77,18 +82,24 @@ def shares(profile: cProfile.Profile) -> dict[str, float]:
     return {name: own_s / total for name, own_s in spent.items()}
 
 
-def main() -> None:
+def tell(name: str) -> None:
     """Print the real-time factor (best of three) and the split of a profiled run."""
-    crawl()
-    runs = [crawl() for _ in range(3)]
+    crawl(name)
+    runs = [crawl(name) for _ in range(3)]
     best = max(virtual_s / cpu_s for virtual_s, cpu_s in runs)
-    print(f"circular crawl, {runs[0][0]:.1f} s of virtual time: {best:.0f} x real time on one core")
-    body = body_share()
+    print(f"{name} crawl, {runs[0][0]:.1f} s of virtual time: {best:.1f} x real time on one core")
+    body = body_share(name)
     print(f"  {'body':31}{100 * body:4.0f} %")
     profile = cProfile.Profile()
-    crawl(profile)
-    for name, share in shares(profile).items():
-        print(f"  {name:31}{100 * share * (1 - body):4.0f} %")
+    crawl(name, profile)
+    for place, share in shares(profile).items():
+        print(f"  {place:31}{100 * share * (1 - body):4.0f} %")
+
+
+def main() -> None:
+    """Tell of every robot."""
+    for name in ROBOTS:
+        tell(name)
 
 
 if __name__ == "__main__":

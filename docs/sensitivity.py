@@ -3,7 +3,8 @@
 Every figure comes from its own script on the bench, through wire, firmware and chips, with one number of the robot file
 changed in the address. A figure, a parameter or a terrain is one row of a table below.
 
-    python docs/sensitivity.py      # make sensitivity: some ten minutes, two processes at a time
+    python docs/sensitivity.py             # make sensitivity: a quarter of an hour, two processes at a time
+    python docs/sensitivity.py sphere-b    # this robot's figures alone
 """
 
 import sys
@@ -121,7 +122,7 @@ CHANGES = (
     Change("turns of the coils", "coils.turns_count", 0.98, 1.02),
     Change("transformation strain", "coils.transformation_strain_ratio", 0.95, 1.05),
     Change("supply voltage", "wiring.supply_v", 0.97, 1.03),
-    Change("charge of the battery [%]", "battery.charge_percent", -30, 10, factors=False),
+    Change("charge of the battery [%]", "battery.charge_percent", -15, 50, factors=False),
     Change("ambient temperature [K]", "ground.ambient_degc", -5, 5, factors=False),
     Change("contact stiffness", "ground.contact_stiffness_n_per_m", 0.5, 2),
     Change("nodes of the mesh", "shell.nodes_count", -8, 8, factors=False),
@@ -132,18 +133,27 @@ PLACES, SEEDS = (-0.4, -0.2, 0.0, 0.2), range(1, 9)  # of the edge, in radii; of
 CROSSERS = tuple(figure for figure in FIGURES if figure.read is not apex)
 
 
-def main() -> int:
-    """Measure all figures that have their script and write the page."""
+def main(robots: list[str]) -> int:
+    """Measure all figures of these robots, or of all, that have their script; what else the page says stays."""
     there = [figure for figure in FIGURES if (ROOT / "gaits" / figure.script).exists()]
     for figure in FIGURES:
         if figure not in there:
             print(f"gaits/{figure.script} is missing: left out", file=sys.stderr)
+    chosen = [figure for figure in there if not robots or figure.robot in robots]
     with ProcessPoolExecutor(AT_ONCE) as pool:
-        parts = [begin_table(pool, figure) for figure in there]
-        parts += [begin_terrain(pool, figure) for figure in there if figure in CROSSERS]
-        text = "\n".join(finish() for finish in parts)
-    PAGE.write_text(HEAD + "\n" + text, encoding="utf-8")
+        parts = [begin_table(pool, figure) for figure in chosen]
+        parts += [begin_terrain(pool, figure) for figure in chosen if figure in CROSSERS]
+        measured = [finish() for finish in parts]
+    PAGE.write_text(page(measured), encoding="utf-8")
     return 0
+
+
+def page(measured: list[str]) -> str:
+    """Return the page with these sections put in place of those of the same title, or after them all."""
+    before = PAGE.read_text(encoding="utf-8").split("\n## ")[1:] if PAGE.exists() else []
+    sections = {text.splitlines()[0]: f"## {text.strip()}\n" for text in before}
+    sections.update((text.splitlines()[0].removeprefix("## "), text) for text in measured)
+    return HEAD + "\n" + "\n".join(sections.values())
 
 
 HEAD = """\
@@ -226,4 +236,4 @@ def relative(value: float | None, nominal: float | None) -> str:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))
