@@ -1,5 +1,6 @@
 """The super-loop: hands the core its bytes and the time every 5 ms and writes what it hands back."""
 
+import sys
 import time
 
 from machine import WDT_RESET, reset, reset_cause
@@ -15,7 +16,7 @@ def run() -> None:
     """Serve for ever. An error opens the coil supply and is left to the watchdog, which restarts the firmware."""
     board = pico.Board()
     try:
-        with open("robot.json", "rb") as file:
+        with open(sys.path[0] + "/robot.json", "rb") as file:
             core = Core(board, Profile(file.read()), pico.boot_number(), reset_cause() == WDT_RESET)
         loop(board, core)
     finally:
@@ -41,6 +42,3 @@ def loop(board: pico.Board, core: Core) -> None:
         ticks = time.ticks_ms()
         now_ms += time.ticks_diff(ticks, last)
         last = ticks
-
-
-run()

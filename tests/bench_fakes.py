@@ -57,12 +57,11 @@ class FakePlant:
 
 def bench_of(folder: Path, main: str, files: dict[str, str] | None = None, **options) -> Bench:
     """Return a bench whose flash holds `main` (after PINS) and the other files."""
-    sources = {"firmware/pins.py": PINS, "firmware/main.py": "from firmware.pins import *\n" + main, **(files or {})}
+    sources = {"pins.py": PINS, "main.py": "from pins import *\n" + main, "robot.json": "{}", **(files or {})}
     for name, text in sources.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text)
-    roots = sorted({folder / name.partition("/")[0] for name in sources})
     plant = options.pop("plant", None) or FakePlant()
     parts = Parts([(0x60, output) for output in range(8)], [0.5] * 8, battery=options.pop("battery", None))
-    return Bench(parts, plant, Image(roots, {"robot.json": b"{}"}), **options)
+    return Bench(parts, plant, Image.of_folder(folder), **options)

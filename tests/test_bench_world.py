@@ -21,7 +21,7 @@ def run(tmp_path, main, files=None, ms=100, **options):
 
 
 def test_boot_runs_before_main_and_both_in_main(tmp_path):
-    bench = run(tmp_path, "print(seen, __name__)\nwhile True: time.sleep_ms(5)", {"firmware/boot.py": "seen = 1"})
+    bench = run(tmp_path, "print(seen, __name__)\nwhile True: time.sleep_ms(5)", {"boot.py": "seen = 1"})
 
     assert said(bench) == ["1 __main__"]
 
@@ -39,6 +39,13 @@ def test_every_form_of_import_reaches_the_image(tmp_path, statement):
     bench = run(tmp_path, statement + "\nprint(MARK if f is None else f.MARK)", {"protocol/frames.py": "MARK = 7"})
 
     assert said(bench) == ["7"]
+
+
+def test_a_package_is_taken_from_the_first_folder_of_the_path_that_has_it(tmp_path):
+    files = {"a/firmware/mark.py": "MARK = 'a'", "b/firmware/mark.py": "MARK = 'b'", "boot.py": "import sys"}
+    main = "sys.path.insert(0, '{}')\nfrom firmware import mark\nprint(mark.MARK)"
+
+    assert [said(run(tmp_path, main.format(slot), files)) for slot in "ab"] == [["a"], ["b"]]
 
 
 def test_two_modules_may_import_each_other(tmp_path):

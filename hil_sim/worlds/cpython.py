@@ -21,7 +21,7 @@ from hil_sim.worlds.image import Image
 from hil_sim.worlds.machine import PWRON_RESET, WDT_RESET, machine_module, time_module
 from hil_sim.worlds.modules import Modules, gc_module, micropython_module, sys_module
 
-RUNS = ("firmware.boot", "firmware.main")
+RUNS = ("boot.py", "main.py")
 _PROTESTS_MAX = 100
 
 
@@ -173,8 +173,8 @@ class Life:
         }
         modules = Modules(world.image, given, self.say)
         try:
-            for name in RUNS:
-                modules.run(name)
+            for path in RUNS:
+                modules.run(path)
         except (GreenletExit, KeyboardInterrupt):
             raise
         except BaseException as error:

@@ -39,9 +39,9 @@ class Modules:
         self.loaded: dict[str, ModuleType] = {**SHARED, **given}
         self._builtins = {**vars(builtins), "__import__": self._import, "open": self._open, "print": self._print}
 
-    def run(self, name: str) -> None:
-        """Execute a module as the board runs boot.py and main.py: in `__main__`. A missing file is passed over."""
-        code = self._image.code(_path(name) + ".py")
+    def run(self, path: str) -> None:
+        """Execute a file as the board runs boot.py and main.py: in `__main__`. A missing one is passed over."""
+        code = self._image.code(path)
         if code is None:
             return
         main = self.loaded.setdefault("__main__", self._empty("__main__"))
@@ -71,17 +71,20 @@ class Modules:
         if name in self.loaded:
             return self.loaded[name]
         module = self._empty(name)
-        path = _path(name)
-        if self._image.has_folder(path):
-            module.__path__ = [path]
-            path += "/__init__"
-            code = self._image.code(path + ".py")
-        else:
-            code = self._image.code(path + ".py")
-            if code is None:
-                raise ImportError(f"no module named '{name}'")
-        self._execute(module, code)
         parent, _, child = name.rpartition(".")
+        within = getattr(self.loaded[parent], "__path__", ()) if parent else self.loaded["sys"].path
+        for folder in within:
+            path = f"{folder}/{child}" if folder else child
+            code = self._image.code(path + ".py")
+            if self._image.has_folder(path):
+                module.__path__ = [path]
+                code = self._image.code(path + "/__init__.py")
+            elif code is None:
+                continue
+            break
+        else:
+            raise ImportError(f"no module named '{name}'")
+        self._execute(module, code)
         if parent:
             setattr(self.loaded[parent], child, module)
         return module
@@ -155,6 +158,7 @@ def sys_module(say: Callable[[str], None]) -> ModuleType:
 
     return _module_of(
         "sys",
+        path=["", ".frozen", "/lib"],
         implementation=SimpleNamespace(name="micropython", version=(1, 29, 0)),
         platform="rp2",
         byteorder="little",
@@ -168,7 +172,3 @@ def _module_of(name: str, **members: object) -> ModuleType:
     module = ModuleType(name)
     vars(module).update(members)
     return module
-
-
-def _path(name: str) -> str:
-    return name.replace(".", "/")
