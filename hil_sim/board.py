@@ -13,6 +13,7 @@ import hashlib
 from collections.abc import Callable, Sequence
 
 from hil_sim.clock import Clock
+from hil_sim.devices.flash import Flash
 from hil_sim.devices.gpio import Gpio
 from hil_sim.devices.i2c import Bus
 from hil_sim.devices.ina226 import Ina226, Source
@@ -59,6 +60,7 @@ class Board:
         self.imu = None if motion is None else Lsm6ds3tr(ATTITUDE, clock, motion, identity)
         self.bus = Bus([*self.pwm.values(), self.monitor, *([self.imu] if self.imu else [])])
         self.ntc = ntc
+        self.flash = Flash({})
         self.uart = Uart(baud)
         self.monostable = Monostable(clock, HEARTBEAT_WINDOW_US, self._on_enable)
         self.gpio = Gpio(clock, journal)

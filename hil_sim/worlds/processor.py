@@ -19,6 +19,9 @@ class Processor(Protocol):
     def reset(self) -> None:
         """Reset the processor; does not return."""
 
+    def lose_power(self) -> None:
+        """Take the board's supply away for an instant; does not return."""
+
     def watch(self, timeout_us: int) -> None:
         """Reset the processor unless this is called again within `timeout_us`."""
 
