@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from hil_sim.board import Board
 from hil_sim.clock import Clock
+from hil_sim.devices.flash import Flash
 from hil_sim.devices.lsm6ds3tr import Motion
 from hil_sim.devices.ntc import Ntc
 from hil_sim.journal import Journal
@@ -93,6 +94,7 @@ class Bench:
         motion = plant if parts.imu and isinstance(plant, Motion) else None
         ntc = parts.ntc or Ntc()
         self.board = Board(self.clock, self.journal, self.supply, parts.outputs, ntc, baud, identity, motion)
+        self.board.flash = Flash({path: image.read(path) for path in image.paths()})
         self.board.degc = parts.ambient_degc
         self.board.changed = self._gates_changed
         self.coils = [CoilRecord(label) for label in plant.labels]

@@ -17,7 +17,6 @@ PAGE_BYTES = 256
 # (data sheet, AC characteristics; at most 3 ms and 400 ms, which drivers wait for). ASSUMED: one erased sector a file.
 PROGRAM_US = 400
 ERASE_US = 45_000
-READ_US = 100  # ASSUMED: finding a file and mapping it
 
 
 class Flash:

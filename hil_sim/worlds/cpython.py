@@ -17,6 +17,7 @@ from greenlet import GreenletExit, getcurrent, greenlet
 from hil_sim.board import Board
 from hil_sim.clock import Event
 from hil_sim.worlds.costs import BOOT_US
+from hil_sim.worlds.files import Files
 from hil_sim.worlds.image import Image
 from hil_sim.worlds.machine import PWRON_RESET, WDT_RESET, machine_module, time_module
 from hil_sim.worlds.modules import Modules, gc_module, micropython_module, sys_module
@@ -121,6 +122,11 @@ class Life:
         self._resume_at = self.clock.at(self.clock.now_us, self._world.reset)
         self._greenlet.parent.switch()
 
+    def lose_power(self) -> None:
+        """Take the board's supply away for an instant; control never comes back to the firmware."""
+        self._resume_at = self.clock.at(self.clock.now_us, self._world.power_on)
+        self._greenlet.parent.switch()
+
     def pause(self) -> None:
         """Never execute again."""
         if self._resume_at is not None:
@@ -171,7 +177,7 @@ class Life:
             "gc": gc_module(),
             "sys": sys_module(self.say),
         }
-        modules = Modules(world.image, given, self.say)
+        modules = Modules(world.image, given, self.say, Files(self).open)
         try:
             for path in RUNS:
                 modules.run(path)

@@ -1,7 +1,8 @@
 """`open` as the rp2 port of MicroPython has it, for what firmware needs: reading, and writing a file anew.
 
-A file is read whole when it is opened. Truncating, writing and closing are operations of their own: each takes its
-time and reaches the flash at once, or is torn by a power cut, from which nothing comes back.
+A file is read whole when it is opened, and like an import that costs no time. Truncating, writing and closing are
+operations of their own: each takes its time and reaches the flash at once, or is torn by a power cut, from which
+nothing comes back.
 
     with Files(processor).open("/settings.0", "wb") as file:
         file.write(record)
@@ -9,11 +10,9 @@ time and reaches the flash at once, or is torn by a power cut, from which nothin
 
 import io
 
-from hil_sim.devices.flash import CLOSE, READ_US, TRUNCATE, WRITE, cost_us
+from hil_sim.devices.flash import CLOSE, TRUNCATE, WRITE, cost_us
 from hil_sim.journal import FLASH
 from hil_sim.worlds.processor import Processor
-
-_READ = 3  # beside the kinds of write operations, in the journal
 
 
 class Files:
@@ -28,15 +27,8 @@ class Files:
             return Written(self, path)
         if mode not in ("r", "rt", "rb"):
             raise OSError(22, "EINVAL")
-        data = self.load(path)
+        data = self._processor.board.flash.read(path)
         return io.BytesIO(data) if mode == "rb" else io.StringIO(data.decode())
-
-    def load(self, path: str) -> bytes:
-        """Return the bytes of a file."""
-        processor = self._processor
-        processor.spend(READ_US)
-        processor.board.journal.note(processor.clock.now_us, FLASH, _READ, path.encode())
-        return processor.board.flash.read(path)
 
     def operate(self, kind: int, path: str, data: bytes = b"") -> None:
         """Carry out a write operation; when the power fails in its middle, it does not return."""

@@ -33,11 +33,17 @@ SHARED: dict[str, ModuleType] = {
 class Modules:
     """The modules of one life of the processor."""
 
-    def __init__(self, image: Image, given: Mapping[str, ModuleType], say: Callable[[str], None]) -> None:
+    def __init__(
+        self,
+        image: Image,
+        given: Mapping[str, ModuleType],
+        say: Callable[[str], None],
+        open_file: Callable[..., object],
+    ) -> None:
         self._image = image
         self._say = say
         self.loaded: dict[str, ModuleType] = {**SHARED, **given}
-        self._builtins = {**vars(builtins), "__import__": self._import, "open": self._open, "print": self._print}
+        self._builtins = {**vars(builtins), "__import__": self._import, "open": open_file, "print": self._print}
 
     def run(self, path: str) -> None:
         """Execute a file as the board runs boot.py and main.py: in `__main__`. A missing one is passed over."""
@@ -103,12 +109,6 @@ class Modules:
         module = ModuleType(name)
         vars(module)["__builtins__"] = self._builtins
         return module
-
-    def _open(self, path: str, mode: str = "r") -> io.IOBase:
-        if mode not in ("r", "rt", "rb"):
-            raise OSError(30, "EROFS")
-        data = self._image.read(path)
-        return io.BytesIO(data) if "b" in mode else io.StringIO(data.decode())
 
     def _print(self, *values: object, sep: str = " ", end: str = "\n", file: Any = None) -> None:
         text = sep.join(map(str, values)) + end
