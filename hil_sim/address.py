@@ -18,8 +18,9 @@ SHORT = {
     "mu": "ground.friction_ratio",
     "supply": "wiring.supply_v",
 }
-OPTIONS = (*SHORT, "seed", "set", "open", "world", "baud")
+OPTIONS = (*SHORT, "seed", "set", "open", "world", "baud", "body")
 WORLDS = ("cpython",)
+BODIES = ("moving", "still")
 BAUD_MAX = 4_000_000
 
 
@@ -37,6 +38,7 @@ class Address:
     world: str = WORLDS[0]
     baud: int = 115_200
     open: tuple[str, ...] = ()  # coils whose wire is broken
+    body: str = BODIES[0]
 
 
 def parse(text: str) -> Address:
@@ -69,8 +71,16 @@ def _take(address: Address, name: str, value: str) -> None:
         address.seed = _whole(name, value, 0, 2**32 - 1)
     elif name == "baud":
         address.baud = _whole(name, value, 300, BAUD_MAX)
-    elif value not in WORLDS:
-        raise AddressError(f"no world {value!r}: known are {', '.join(WORLDS)}{near(value, WORLDS)}")
+    elif name == "body":
+        address.body = _one_of(name, value, BODIES)
+    else:
+        address.world = _one_of(name, value, WORLDS)
+
+
+def _one_of(name: str, value: str, known: tuple[str, ...]) -> str:
+    if value in known:
+        return value
+    raise AddressError(f"no {name} {value!r}: known are {', '.join(known)}{near(value, known)}")
 
 
 def _number(name: str, value: str) -> str:

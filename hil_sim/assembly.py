@@ -2,7 +2,7 @@
 
 import json
 
-from hil_sim.address import Address
+from hil_sim.address import BODIES, Address
 from hil_sim.bench import Bench, Parts, Plant
 from hil_sim.devices.ntc import Ntc
 from hil_sim.faults import schedule
@@ -12,6 +12,7 @@ from hil_sim.robotfile import RobotFile, RobotFileError, load
 from hil_sim.robotkeys import RING
 from hil_sim.soundness import CameApart
 from hil_sim.sphere import SpherePlant
+from hil_sim.still import still
 from hil_sim.supply import Battery
 from hil_sim.worlds.image import Image
 
@@ -27,7 +28,7 @@ def assemble(address: Address) -> Bench:
     image = Image.installed(profile)
     identity = f"{robot.name} {address.seed}"
     try:
-        plant = plant_of(robot, address.seed)
+        plant = plant_of(robot, address.seed, address.body)
         bench = Bench(parts_of(robot), plant, image, baud=address.baud, identity=identity)
     except (ArithmeticError, CameApart) as error:
         raise RobotFileError(f"{robot.name} cannot be built from these numbers: {error}") from error
@@ -36,9 +37,10 @@ def assemble(address: Address) -> Bench:
     return bench
 
 
-def plant_of(robot: RobotFile, seed: int) -> Plant:
-    """Return the body of a robot; the seed makes its terrain."""
-    return RingPlant(robot, seed) if robot.kind == RING else SpherePlant(robot, seed)
+def plant_of(robot: RobotFile, seed: int, body: str = BODIES[0]) -> Plant:
+    """Return the body of a robot; the seed makes its terrain. A "still" one keeps the shape in which it rests."""
+    plant = RingPlant(robot, seed) if robot.kind == RING else SpherePlant(robot, seed)
+    return plant if body == BODIES[0] else still(plant)
 
 
 def _agree(robot: RobotFile, profile: bytes) -> None:

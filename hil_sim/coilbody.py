@@ -9,7 +9,7 @@ import numpy as np
 
 from hil_sim.physics.bodies import GroundNumbers
 from hil_sim.physics.body import World, gravity
-from hil_sim.physics.coilset import CoilState
+from hil_sim.physics.coilset import Coils, CoilState
 from hil_sim.physics.compiled import Array, bound
 from hil_sim.physics.tally import TIME, balance, effort
 
@@ -17,6 +17,7 @@ from hil_sim.physics.tally import TIME, balance, effort
 class CoilBody:
     """Coils and their heat, time, ground and the balance of energies; the shape is the plant's own."""
 
+    _coils: Coils
     _state: CoilState
     _tally: Array
 
@@ -58,6 +59,10 @@ class CoilBody:
     def effort(self) -> dict[str, int]:
         """Return how many steps, rejected steps and Newton iterations it took so far."""
         return effort(self._tally)
+
+    def hold(self, entry: Any) -> None:
+        """Move no more: from here on `entry`, see still.py, heats and cools the coils at the lengths they have."""
+        self._begin(entry, self._coils, self._state, self._state.L.copy(), self.force, self._tally)
 
     def _begin(self, entry: Any, *parts: Any) -> None:
         """Take the kernel that advances the body and what it works on; from here on energies are counted."""
