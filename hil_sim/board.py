@@ -1,9 +1,9 @@
-"""The netlist of the core board: which pin, bus, chip and coil hang together.
+"""The netlist of the core board: which pin, bus, chip and coil hang together, and what of that is broken.
 
 The outputs of both PWM chips drive only while the heartbeat keeps the monostable running and the emergency-stop loop
-is closed; the coils are fed only while PWR_EN is high. Both rest low, hence off, when the processor is reset; the
-chips keep their registers through that. An attitude sensor is there where the body has `motion` to be felt; its axes
-are the core's.
+is closed; the monitor's ALERT is the monostable's clear input. The coils are fed only while PWR_EN is high. Both rest
+low, hence off, when the processor is reset; the chips keep their registers through that. An attitude sensor is there
+where the body has `motion` to be felt; its axes are the core's.
 
     board = Board(clock, journal, supply, outputs=[(0x60, 0), (0x60, 1)], ntc=Ntc())
     board.gates()  # what each coil is driven with
@@ -11,6 +11,7 @@ are the core's.
 
 import hashlib
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 from hil_sim.clock import Clock
 from hil_sim.devices.flash import Flash
@@ -32,6 +33,20 @@ PWM_CHIPS = (0x60, 0x61)
 MONITOR = 0x40
 ATTITUDE = 0x6A
 _OFF = (0.0, 0.0)
+_ON = (0.0, 1.0)
+
+
+@dataclass
+class Broken:
+    """What is broken or wrong on a board; `Board.rewired` takes up a change.
+
+    Without the monostable OE, which is active low, hangs on the heartbeat pin alone: its pull-down after a reset then
+    ENABLES the outputs, and neither the emergency stop nor ALERT reach them.
+    """
+
+    welded: bool = False  # the contactor does not open any more
+    bypassed: bool = False  # the monostable was left out
+    stuck: set[int] = field(default_factory=set)  # coils whose MOSFET conducts for ever
 
 
 class Board:
@@ -52,11 +67,11 @@ class Board:
         self.journal = journal
         self.changed: Callable[[], None] = _nothing
         self.degc = 25.0
-        self.powered = False
+        self.broken = Broken()
         self.estop_closed = True
         self.unique_id = hashlib.sha256(identity.encode()).digest()[:8]
         self.pwm = {address: Pca9685(address, clock, self._on_change) for address in PWM_CHIPS}
-        self.monitor = Ina226(MONITOR, clock, source)
+        self.monitor = Ina226(MONITOR, clock, source, self._on_alert)
         self.imu = None if motion is None else Lsm6ds3tr(ATTITUDE, clock, motion, identity)
         self.bus = Bus([*self.pwm.values(), self.monitor, *([self.imu] if self.imu else [])])
         self.ntc = ntc
@@ -64,17 +79,37 @@ class Board:
         self.uart = Uart(baud)
         self.monostable = Monostable(clock, HEARTBEAT_WINDOW_US, self._on_enable)
         self.gpio = Gpio(clock, journal)
-        self.gpio.watchers[PWR_EN] = self._on_power
-        self.gpio.watchers[HEARTBEAT] = lambda _: self.monostable.edge()
+        self.gpio.watchers[PWR_EN] = lambda _: self._on_change()
+        self.gpio.watchers[HEARTBEAT] = lambda _: self._on_beat()
         self.gpio.sources[ESTOP_SENSE] = lambda: 1 if self.estop_closed else None
         self.gpio.sources[ALERT] = self.monitor.alert_level
         self._outputs = [(self.pwm[chip], output) for chip, output in outputs]
 
     def gates(self) -> list[Gate]:
-        """Return what each coil is driven with: nothing while PWR_EN is low."""
+        """Return what each coil is driven with: nothing while its supply is open."""
         if not self.powered:
             return [_OFF] * len(self._outputs)
-        return [chip.outputs[output] for chip, output in self._outputs]
+        gates = [chip.outputs[output] for chip, output in self._outputs]
+        for coil in self.broken.stuck:
+            gates[coil] = _ON
+        return gates
+
+    @property
+    def powered(self) -> bool:
+        """Whether the contactor feeds the coils."""
+        return self.broken.welded or self.gpio.driven(PWR_EN) == 1
+
+    @property
+    def enabled(self) -> bool:
+        """Whether the wires let the PWM chips drive their outputs."""
+        if self.broken.bypassed:
+            return not self.gpio.driven(HEARTBEAT)
+        return self.monostable.running and self.estop_closed
+
+    def rewired(self) -> None:
+        """Take up that something broke or was mended."""
+        self._on_enable()
+        self._on_change()
 
     def pwm_period_us(self) -> float:
         """Return the length of a PWM period."""
@@ -82,7 +117,7 @@ class Board:
 
     def convert(self, channel: int) -> int:
         """Return the 12-bit result of an analogue input; an unconnected one reads 0."""
-        counts = self.ntc.counts(self.degc) if channel == THERMISTOR_CHANNEL else 0
+        counts = self.ntc.counts(self.degc, self.clock.now_us) if channel == THERMISTOR_CHANNEL else 0
         self.journal.note(self.clock.now_us, ADC, channel, counts.to_bytes(2, "little"))
         return counts
 
@@ -111,14 +146,17 @@ class Board:
         self.estop_closed = closed
         self._on_enable()
 
-    def _on_enable(self) -> None:
-        enable = self.monostable.running and self.estop_closed
-        for chip in self.pwm.values():
-            chip.enable(enable)
+    def _on_beat(self) -> None:
+        self.monostable.edge()
+        if self.broken.bypassed:
+            self._on_enable()
 
-    def _on_power(self, level: int) -> None:
-        self.powered = bool(level)
-        self._on_change()
+    def _on_alert(self) -> None:
+        self.monostable.clear(held=not self.monitor.alert_level())
+
+    def _on_enable(self) -> None:
+        for chip in self.pwm.values():
+            chip.enable(self.enabled)
 
     def _on_change(self) -> None:
         self.changed()

@@ -5,7 +5,9 @@ The order on the rail is source, shunt, the monitor's bus pin, the PWR_EN switch
 supply's voltage also while the switch is open. The resistance of the source includes the shunt. A battery on board
 stands before that source, and feeds the board's own chips before the shunt.
 
-ASSUMED: the PWM chips run in phase, and their period began at time 0.
+A coil can be open or shorted at its terminals, and the source can sag. What a short turns to heat warms no coil.
+
+ASSUMED: the PWM chips run in phase, and their period began at time 0; a short has 20 mohm.
 """
 
 from collections.abc import Sequence
@@ -21,6 +23,7 @@ from hil_sim.physics.window import solve_period, window_charges
 FloatArray = NDArray[np.float64]
 
 
+SHORT_OHM = 0.02
 STALE_V = 1e-3  # a source that has moved so far since the last solution calls for another
 
 
@@ -67,20 +70,23 @@ class Supply:
         self.battery = battery
         self._series_ohm = series_ohm.copy()
         self._source_ohm = source_ohm + (battery.inner_ohm if battery else 0.0)
-        self._voltage_v = battery.voltage_v if battery else voltage_v
+        self._nominal_v = voltage_v
+        self._sag = 0.0
+        self._voltage_v = self._source_v()
         self._circuit = circuit_of(series_ohm, self._source_ohm, self._voltage_v)
         self._shunt_ohm = shunt_ohm
         self._on: FloatArray = np.zeros(len(series_ohm))
         self._width: FloatArray = np.zeros(len(series_ohm))
         self._period_us = 1.0
         self._steady = True
+        self._shorted: NDArray[np.bool_] = np.zeros(len(series_ohm), bool)
         self.solve(np.full(len(series_ohm), np.inf))  # all open: no machine code is left to be loaded later
         self.integrals_vus(0, 0, 1, 1, 1)
 
     @property
     def stale(self) -> bool:
         """Whether the source has moved since `solve`, so that it should be done again."""
-        return self.battery is not None and abs(self.battery.voltage_v - self._voltage_v) > STALE_V
+        return abs(self._source_v() - self._voltage_v) > STALE_V
 
     def spend(self, duration_us: int) -> None:
         """Take from the battery, where there is one, what has been drawn for so long."""
@@ -91,6 +97,14 @@ class Supply:
         """Open the wire of a coil, or mend it; `solve` must follow."""
         self._circuit.r[index] = np.inf if broken else self._series_ohm[index]
 
+    def short_coil(self, index: int, shorted: bool) -> None:
+        """Bridge the terminals of a coil, or part them; `solve` must follow."""
+        self._shorted[index] = shorted
+
+    def sag(self, share: float) -> None:
+        """Let the source give this share less of its voltage than it should; `solve` must follow."""
+        self._sag = share
+
     def drive(self, gates: Sequence[Gate], period_us: float) -> None:
         """Take the gates that hold from now on; `solve` must follow."""
         self._on, self._width = np.array(gates, float).T.copy()
@@ -98,10 +112,19 @@ class Supply:
 
     def solve(self, resistance_ohm: FloatArray) -> None:
         """Work out powers and currents for resistances that hold from now on."""
-        if self.battery is not None:
-            self._voltage_v = self._circuit.supply[0] = self.battery.voltage_v
+        self._voltage_v = self._circuit.supply[0] = self._source_v()
+        bridged = bool(self._shorted.any())
+        if bridged:
+            share = np.where(self._shorted, SHORT_OHM / (SHORT_OHM + resistance_ohm), 1.0)  # of its power, a coil's own
+            resistance_ohm = np.where(self._shorted, 1 / (1 / SHORT_OHM + 1 / resistance_ohm), resistance_ohm)
         self.current_a = solve_period(self._circuit, self._on, self._width, resistance_ohm, self.power_w)
+        if bridged:
+            self.power_w *= share
         self._steady = self._circuit.intervals[0] == 1
+
+    def _source_v(self) -> float:
+        """Return the voltage of the source without the coils."""
+        return (1.0 - self._sag) * (self.battery.voltage_v if self.battery else self._nominal_v)
 
     def steady_v(self) -> tuple[float, float] | None:
         """Return the voltages across the shunt and at the bus pin, or None while they ripple."""

@@ -33,6 +33,16 @@ def test_a_broken_or_shorted_thermistor_reads_a_rail():
     assert ntc.counts(25.0) == 0
 
 
+def test_a_drifting_thermistor_reads_more_with_every_second_up_to_an_end():
+    ntc = Ntc()
+    ntc.drift_k_per_s, ntc.drifts_from_us = 2.0, 1_000_000
+
+    assert ntc.counts(25.0, 6_000_000) == Ntc().counts(35.0)
+
+    ntc.drift_k_per_s = -1e6
+    assert ntc.counts(25.0, 6_000_000) == Ntc().counts(-100.0)
+
+
 def test_twelve_bits_are_scaled_to_sixteen_as_the_port_does():
     assert [scaled_to_u16(counts) for counts in (0, 1, 0x800, 0xFFF)] == [0, 0x10, 0x8008, 0xFFFF]
 
@@ -52,6 +62,27 @@ def test_the_monostable_opens_50_ms_after_the_last_edge(window):
     clock.run_until(200_000)
 
     assert changes == [(0, True), (80_000, False)]
+
+
+def test_clear_ends_the_monostable_at_once_and_blocks_its_trigger(window):
+    clock, monostable, changes = window
+    for time_us, act in ((0, monostable.edge), (10_000, lambda: monostable.clear(True)), (20_000, monostable.edge)):
+        clock.at(time_us, act)
+
+    clock.run_until(200_000)
+
+    assert changes == [(0, True), (10_000, False)]
+
+
+def test_the_release_of_clear_starts_nothing_before_the_next_edge(window):
+    clock, monostable, changes = window
+    acts = (monostable.edge, lambda: monostable.clear(True), lambda: monostable.clear(False), monostable.edge)
+    for time_us, act in zip((0, 10_000, 20_000, 40_000), acts, strict=True):
+        clock.at(time_us, act)
+
+    clock.run_until(200_000)
+
+    assert changes == [(0, True), (10_000, False), (40_000, True), (90_000, False)]
 
 
 def test_the_monostable_starts_again_at_the_next_edge(window):

@@ -57,6 +57,10 @@ class Gpio:
         level = source() if source is not None else None
         return int(self._pull[pin] == PULL_UP) if level is None else level
 
+    def driven(self, pin: int) -> int:
+        """Return the level that the processor leaves on a wire: low where its pin is an input, by the pull-down."""
+        return self._level[pin]
+
     def mode(self, pin: int) -> int:
         """Return IN, OUT or OPEN_DRAIN."""
         return self._mode[pin]

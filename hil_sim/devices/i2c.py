@@ -28,16 +28,27 @@ class Chip(Protocol):
         """Return `count` bytes from the place the last write pointed at."""
 
 
+class Trouble(Protocol):
+    """What disturbs the transfers of a bus."""
+
+    def met(self, chips: list[Chip]) -> list[Chip]:
+        """Return who answers a transfer to these chips."""
+
+
 class Bus:
-    """Chips on two wires."""
+    """Chips on two wires, with the troubles that there are on them."""
 
     def __init__(self, chips: Iterable[Chip] = ()) -> None:
         self.chips = list(chips)
         self.stuck = False  # SCL held low: no transfer ends before its time-out
+        self.troubles: list[Trouble] = []
 
     def at(self, address: int) -> list[Chip]:
-        """Return the chips that acknowledge this address."""
-        return [] if self.stuck else [chip for chip in self.chips if chip.answers(address)]
+        """Begin a transfer: return the chips that acknowledge this address."""
+        chips = [] if self.stuck else [chip for chip in self.chips if chip.answers(address)]
+        for trouble in self.troubles:
+            chips = trouble.met(chips)
+        return chips
 
     def write(self, address: int, data: bytes) -> int:
         """Send `data` to `address` and return the number of bytes acknowledged; -1 for the address itself."""

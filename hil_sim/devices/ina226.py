@@ -2,15 +2,17 @@
 
 Conversions run by themselves at the configured times and averages, and each result is the mean of its own window. No
 event is needed for that: the chip works out what it would have converted when it is next asked, and once more
-(`before_change`) before the supply changes. Conversions and PWM are not synchronous, so a short conversion of a pulsed
+(`before_change`) before the supply changes. Only while a limit is watched does each conversion end with an event, as
+the alert pin acts without being read. Conversions and PWM are not synchronous, so a short conversion of a pulsed
 current aliases, as on the real board.
 
 ASSUMED: with averaging, shunt and bus conversions alternate; results round to the nearest bit.
 """
 
+from collections.abc import Callable
 from typing import Protocol
 
-from hil_sim.clock import Clock
+from hil_sim.clock import Clock, Event
 
 CONFIG, SHUNT, BUS, POWER, CURRENT, CALIBRATION, MASK, LIMIT, MAKER_ID, DIE_ID = (*range(8), 0xFE, 0xFF)
 RESET = 0x8000
@@ -38,11 +40,14 @@ class Source(Protocol):
 
 
 class Ina226:
-    """One chip at `address` that measures `source`."""
+    """One chip at `address` that measures `source`; `alerted` is called when the level of its alert pin has changed."""
 
-    def __init__(self, address: int, clock: Clock, source: Source) -> None:
+    def __init__(self, address: int, clock: Clock, source: Source, alerted: Callable[[], None] | None = None) -> None:
         self.address = address
         self.alive = True
+        self._alerted = alerted
+        self._level = 1  # of the alert pin, as last told
+        self._look_at: Event | None = None
         self._clock = clock
         self._source = source
         self._settled = False  # the last conversion and all since saw no change: its results repeat
@@ -55,6 +60,7 @@ class Ina226:
         self._pointer = 0
         self._asserted = False
         self._begin()
+        self._tell()
 
     def catch_up(self) -> None:
         """Finish all conversions that have ended by now."""
@@ -81,7 +87,7 @@ class Ina226:
     def alert_level(self) -> int:
         """Return the level of the open-drain alert pin with its pull-up: 0 while it alerts."""
         self.catch_up()
-        return int(self._asserted == bool(self.registers[MASK] & ALERT_HIGH))
+        return self._pin()
 
     def answers(self, address: int) -> bool:
         """Its own address only."""
@@ -95,6 +101,8 @@ class Ina226:
         if len(data) >= 3:
             self._settled = False
             self._store(data[0], data[1] << 8 | data[2])
+            self._watch()
+            self._tell()
         return len(data)
 
     def read(self, count: int) -> bytes:
@@ -103,6 +111,7 @@ class Ina226:
         value = self.registers.get(self._pointer, 0)
         if self._pointer == MASK:
             self._acknowledge()
+            self._tell()
         return (value.to_bytes(2, "big") * (count // 2 + 1))[:count]
 
     def _store(self, register: int, value: int) -> None:
@@ -125,6 +134,26 @@ class Ina226:
         if self.registers[MASK] & (LATCH | READY_ALERT):
             self.registers[MASK] &= ~ALERT_FLAG
             self._asserted = False
+
+    def _pin(self) -> int:
+        return int(self._asserted == bool(self.registers[MASK] & ALERT_HIGH))
+
+    def _tell(self) -> None:
+        if self._level != self._pin():
+            self._level = self._pin()
+            if self._alerted is not None:
+                self._alerted()
+
+    def _watch(self) -> None:
+        """See to it that a conversion that is watched is looked at when it ends."""
+        if self._look_at is None and self._cycle_us and self.registers[MASK] & 0xFC00:
+            self._look_at = self._clock.at(self._begun_us + self._cycle_us, self._look)
+
+    def _look(self) -> None:
+        self._look_at = None
+        self.catch_up()
+        self._watch()
+        self._tell()
 
     def _begin(self) -> None:
         """Start a conversion as CONFIG says."""

@@ -10,17 +10,30 @@ times are exact, because positions on the line are kept in bits and not in round
 
 from collections import deque
 from collections.abc import Callable
+from typing import Protocol
 
 BITS_PER_BYTE = 10  # start, eight, stop
 BUFFER_BYTES = 256
 _SECOND_US = 1_000_000
 
 
+class Disturbance(Protocol):
+    """What makes others of the bytes on a line."""
+
+    def heard(self, data: bytes) -> bytes:
+        """Return what arrives of bytes that were sent."""
+
+
 class Wire:
-    """One direction of a line. Times are held as us * baud, in which a byte is a whole number."""
+    """One direction of a line. Times are held as us * baud, in which a byte is a whole number.
+
+    Bytes arrive `delay_us` after they have left, and as the `noises` make them.
+    """
 
     def __init__(self, baud: int) -> None:
         self.baud = baud
+        self.delay_us = 0
+        self.noises: list[Disturbance] = []
         self._runs: deque[tuple[int, bytes]] = deque()  # start of the first byte, bytes
         self._free = 0
 
@@ -30,10 +43,16 @@ class Wire:
         self._free = start + len(data) * BITS_PER_BYTE * _SECOND_US
         if data:
             self._runs.append((start, data))
-        return -(-self._free // self.baud)
+        return -(-self._free // self.baud) + self.delay_us
 
     def take(self, now_us: int) -> bytes:
         """Return, once, the bytes that have arrived by now."""
+        taken = self._arrived(now_us - self.delay_us)
+        for noise in self.noises:
+            taken = noise.heard(taken)
+        return taken
+
+    def _arrived(self, now_us: int) -> bytes:
         taken = b""
         while self._runs:
             start, data = self._runs[0]
@@ -52,7 +71,7 @@ class Wire:
         if not self._runs:
             return None
         start, data = self._runs[0]
-        return -(-(start + len(data) * BITS_PER_BYTE * _SECOND_US) // self.baud)
+        return -(-(start + len(data) * BITS_PER_BYTE * _SECOND_US) // self.baud) + self.delay_us
 
     def waiting(self, now_us: int) -> int:
         """Return how many bytes have not fully left yet."""
@@ -63,6 +82,12 @@ class Wire:
         """Drop what is on the line."""
         self._runs.clear()
         self._free = now_us * self.baud
+
+    def at(self, baud: int) -> "Wire":
+        """Return the same wire at another rate, with nothing on it."""
+        wire = Wire(baud)
+        wire.delay_us, wire.noises = self.delay_us, self.noises
+        return wire
 
 
 class Uart:
@@ -78,6 +103,8 @@ class Uart:
         self.misread = 0
         self.is_open = False
         self.connected = True
+        self.deserted = False  # the host's process has died: it neither writes nor reads
+        self.trap: Callable[[str], None] | None = None  # is told of each "read" and "write" of the device
         self.sent: Callable[[int], None] | None = None
         self._received = bytearray()
         self._landed = b""
@@ -87,7 +114,7 @@ class Uart:
     def open(self, baud: int, now_us: int, rx_bytes: int = BUFFER_BYTES, tx_bytes: int = BUFFER_BYTES) -> None:
         """Start the device's end at `baud`; what arrived before is lost."""
         self.close(now_us)
-        self.outward = Wire(baud)
+        self.outward = self.outward.at(baud)
         self._room = rx_bytes
         self._send_room = tx_bytes
         self.is_open = True
@@ -107,6 +134,8 @@ class Uart:
 
     def read(self, count: int, now_us: int) -> bytes:
         """Return up to `count` received bytes."""
+        if self.trap is not None:
+            self.trap("read")
         self._fill(now_us)
         data = bytes(self._received[:count])
         del self._received[:count]
@@ -114,15 +143,17 @@ class Uart:
 
     def write(self, data: bytes, now_us: int) -> int:
         """Send as much of `data` as the transmit buffer takes; return how much that is."""
+        if self.trap is not None:
+            self.trap("write")
         data = data[: max(0, self._send_room - self.outward.waiting(now_us))]
         arrives_us = self.outward.send(self._as_heard(data), now_us)
-        if self.sent is not None and self.connected:
+        if self.sent is not None and self._reaches_host:
             self.sent(arrives_us)
         return len(data)
 
     def host_write(self, data: bytes, now_us: int) -> None:
         """Put the host's bytes on the line."""
-        if self.connected:
+        if self._reaches_host:
             self.inward.send(data, now_us)
 
     def host_read(self, now_us: int) -> bytes:
@@ -133,13 +164,12 @@ class Uart:
 
     def host_wake_us(self) -> int | None:
         """Return when the next device write will have reached the host as a whole, or None."""
-        return self.outward.next_us() if self.connected else None
+        return self.outward.next_us() if self._reaches_host else None
 
     def cut(self, now_us: int) -> None:
         """Pull the cable out: what is on it is lost."""
-        self._fill(now_us)
+        self.settle(now_us)
         self.inward.clear(now_us)
-        self._land(now_us)
         self.connected = False
 
     def join(self, now_us: int) -> None:
@@ -147,9 +177,28 @@ class Uart:
         self._land(now_us)
         self.connected = True
 
+    def desert(self, deserted: bool, now_us: int) -> None:
+        """Let the host's process die, or a new one come: what it had written still goes out."""
+        self._land(now_us)
+        self.deserted = deserted
+
+    def retune(self, host_baud: int, now_us: int) -> None:
+        """Have the host's end run at another rate: what is on the way to the device is lost."""
+        self.settle(now_us)
+        self.inward = self.inward.at(host_baud)
+
+    def settle(self, now_us: int) -> None:
+        """Hand over all that has arrived by now; to be called before the line changes."""
+        self._fill(now_us)
+        self._land(now_us)
+
+    @property
+    def _reaches_host(self) -> bool:
+        return self.connected and not self.deserted
+
     def _land(self, now_us: int) -> None:
         arrived = self.outward.take(now_us)
-        if self.connected:
+        if self._reaches_host:
             self._landed += arrived
 
     def _fill(self, now_us: int) -> None:
