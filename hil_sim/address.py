@@ -19,7 +19,7 @@ SHORT = {
     "supply": "wiring.supply_v",
 }
 OPTIONS = (*SHORT, "seed", "set", "open", "world", "baud", "body")
-WORLDS = ("cpython",)
+WORLDS = ("cpython", "micropython")
 BODIES = ("moving", "still")
 BAUD_MAX = 4_000_000
 

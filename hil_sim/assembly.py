@@ -14,7 +14,9 @@ from hil_sim.soundness import CameApart
 from hil_sim.sphere import SpherePlant
 from hil_sim.still import still
 from hil_sim.supply import Battery
+from hil_sim.worlds import cpython, micropython
 from hil_sim.worlds.image import Image
+from hil_sim.worlds.world import Interpreter
 
 
 def assemble(address: Address) -> Bench:
@@ -26,10 +28,11 @@ def assemble(address: Address) -> Bench:
     profile = robot.profile.read_bytes()
     _agree(robot, profile)
     image = Image.installed(profile)
+    execute = interpreter_of(address.world)
     identity = f"{robot.name} {address.seed}"
     try:
         plant = plant_of(robot, address.seed, address.body)
-        bench = Bench(parts_of(robot), plant, image, baud=address.baud, identity=identity)
+        bench = Bench(parts_of(robot), plant, image, execute, baud=address.baud, identity=identity)
     except (ArithmeticError, CameApart) as error:
         raise RobotFileError(f"{robot.name} cannot be built from these numbers: {error}") from error
     for label in address.open:
@@ -41,6 +44,14 @@ def plant_of(robot: RobotFile, seed: int, body: str = BODIES[0]) -> Plant:
     """Return the body of a robot; the seed makes its terrain. A "still" one keeps the shape in which it rests."""
     plant = RingPlant(robot, seed) if robot.kind == RING else SpherePlant(robot, seed)
     return plant if body == BODIES[0] else still(plant)
+
+
+def interpreter_of(world: str) -> Interpreter:
+    """Return what runs the firmware in a world; LookupError when MicroPython is not there."""
+    if world == "cpython":
+        return cpython.execute
+    micropython.interpreter()
+    return micropython.execute
 
 
 def _agree(robot: RobotFile, profile: bytes) -> None:

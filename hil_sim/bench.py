@@ -25,8 +25,9 @@ from hil_sim.journal import Journal
 from hil_sim.record import CoilRecord
 from hil_sim.soundness import EVERY_US, Soundness
 from hil_sim.supply import Battery, Supply
-from hil_sim.worlds.cpython import CPythonWorld, Crash
+from hil_sim.worlds import cpython
 from hil_sim.worlds.image import Image
+from hil_sim.worlds.world import Crash, Interpreter, World
 
 GRID_US = 5_000
 FloatArray = NDArray[np.float64]
@@ -80,6 +81,7 @@ class Bench:
         parts: Parts,
         plant: Plant,
         image: Image,
+        execute: Interpreter = cpython.execute,
         *,
         baud: int = 115_200,
         identity: str = "softrig",
@@ -98,7 +100,7 @@ class Bench:
         self.board.degc = parts.ambient_degc
         self.board.changed = self._gates_changed
         self.coils = [CoilRecord(label) for label in plant.labels]
-        self.world = CPythonWorld(self.board, image, ticks_start_us)
+        self.world = World(self.board, image, execute, ticks_start_us)
         self._by_label = {coil.label: coil for coil in self.coils}
         self._advanced_us = 0
         self._hot = False

@@ -174,7 +174,7 @@ def test_an_address_sets_numbers_of_the_robot_and_of_the_run():
         ("sim:circular?slope=nan", "slope: 'nan' is not a number"),
         ("sim:circular?seed=-1", "seed=-1: a whole number from 0 to 4294967295"),
         ("sim:circular?baud=1", "baud=1: a whole number from 300"),
-        ("sim:circular?world=python", "no world 'python': known are cpython; did you mean cpython"),
+        ("sim:circular?world=python", "no world 'python': known are cpython, micropython; did you mean cpython"),
         ("sim:circular?set=shell.mass_g", "write set=section.key_unit:number"),
     ],
 )

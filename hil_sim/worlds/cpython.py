@@ -1,196 +1,26 @@
 """World T1: the firmware's files run in this process, each board in its own private import world.
 
-The firmware runs in a greenlet. Time that it spends passes at once while nothing else is due; otherwise it queues
-behind that in the bench's clock. A reset drops its modules and begins again; nothing it does can catch a reset.
-
-    world = CPythonWorld(board, image)
-    world.power_on()
-    board.clock.run_until(1_000_000)
+`machine` and `time` are the bench's own modules, so an access to the hardware is a call. A reset drops the modules of
+the firmware and imports them again.
 """
 
-import traceback
-from collections.abc import Callable
-from dataclasses import dataclass
-
-from greenlet import GreenletExit, getcurrent, greenlet
-
-from hil_sim.board import Board
-from hil_sim.clock import Event
-from hil_sim.worlds.costs import BOOT_US
 from hil_sim.worlds.files import Files
-from hil_sim.worlds.image import Image
-from hil_sim.worlds.machine import PWRON_RESET, WDT_RESET, machine_module, time_module
+from hil_sim.worlds.machine import machine_module, time_module
 from hil_sim.worlds.modules import Modules, gc_module, micropython_module, sys_module
+from hil_sim.worlds.world import Life
 
 RUNS = ("boot.py", "main.py")
-_PROTESTS_MAX = 100
 
 
-@dataclass(frozen=True)
-class Crash:
-    """An exception that escaped the firmware, or its end where it should have run for ever."""
-
-    time_us: int
-    error: str
-    trace: str
-
-
-class CPythonWorld:
-    """A processor with its flash. `crashes` lists what escaped the firmware, `console` what it printed."""
-
-    def __init__(self, board: Board, image: Image, ticks_start_us: int = 0) -> None:
-        self.crashes: list[Crash] = []
-        self.console: list[str] = []
-        self.resets = 0
-        self.image = image
-        self.board = board
-        self._ticks_start_us = ticks_start_us
-        self._life: Life | None = None
-
-    @property
-    def running(self) -> bool:
-        """Whether the firmware executes: not while it hangs, has crashed or ended."""
-        return self._life is not None and self._life.running
-
-    def power_on(self) -> None:
-        """Give the board its supply, or take it away for an instant and give it back."""
-        self.board.power_cycle()
-        self._begin(PWRON_RESET, self._ticks_start_us)
-
-    def power_off(self) -> None:
-        """Take the board's supply away: its pins rest, its chips forget, nothing executes."""
-        self.close()
-        self.board.power_cycle()
-        self.board.reset_processor(PWRON_RESET)
-
-    def reset(self) -> None:
-        """Reset the processor as the watchdog, or `machine.reset`, does."""
-        self.resets += 1
-        self._begin(WDT_RESET, 0)
-
-    def hang(self) -> None:
-        """Stop executing: as when the firmware is caught in a loop. The watchdog goes on."""
-        if self._life is not None:
-            self._life.pause()
-
-    def close(self) -> None:
-        """End the firmware for good."""
-        if self._life is not None:
-            self._life.end()
-            self._life = None
-
-    def _begin(self, cause: int, ticks_start_us: int) -> None:
-        self.close()
-        self.board.reset_processor(cause)
-        self._life = Life(self, cause, ticks_start_us)
-
-
-class Life:
-    """The processor from one reset to the next."""
-
-    def __init__(self, world: CPythonWorld, cause: int, ticks_start_us: int) -> None:
-        self.board = world.board
-        self.clock = world.board.clock
-        self.cause = cause
-        self.spend: Callable[[int], None] = self._spend
-        self._world = world
-        self._ticks_zero_us = self.clock.now_us - ticks_start_us
-        self._greenlet = greenlet(self._run)
-        self._resume_at: Event | None = self.clock.at(self.clock.now_us + BOOT_US, self._resume)
-        self._bite_at: Event | None = None
-        self._bite_us = 0
-        self._protests = 0
-        self._ended = False
-
-    @property
-    def running(self) -> bool:
-        """Whether it has something left to execute and will."""
-        return self._resume_at is not None and not self._greenlet.dead
-
-    def ticks_us(self) -> int:
-        """Return the time since reset."""
-        return self.clock.now_us - self._ticks_zero_us
-
-    def watch(self, timeout_us: int) -> None:
-        """Start the watchdog, or start its time-out anew."""
-        self._bite_us = self.clock.now_us + timeout_us
-        if self._bite_at is None:
-            self._bite_at = self.clock.at(self._bite_us, self._bite)
-
-    def reset(self) -> None:
-        """Reset the processor from within; control never comes back to the firmware."""
-        self._resume_at = self.clock.at(self.clock.now_us, self._world.reset)
-        self._greenlet.parent.switch()
-
-    def lose_power(self) -> None:
-        """Take the board's supply away for an instant; control never comes back to the firmware."""
-        self._resume_at = self.clock.at(self.clock.now_us, self._world.power_on)
-        self._greenlet.parent.switch()
-
-    def pause(self) -> None:
-        """Never execute again."""
-        if self._resume_at is not None:
-            self._resume_at.cancel()
-            self._resume_at = None
-
-    def say(self, text: str) -> None:
-        """Print on the board's console."""
-        if not self._ended:
-            self._world.console.append(text)
-
-    def end(self) -> None:
-        """Unwind the firmware; its `finally` and `except` blocks reach no hardware any more."""
-        self._ended = True
-        self.pause()
-        if self._bite_at is not None:
-            self._bite_at.cancel()
-        self.spend = self._protest
-        if self._greenlet and not self._greenlet.dead:
-            self._greenlet.parent = getcurrent()
-            self._greenlet.throw(GreenletExit)
-
-    def _spend(self, cost_us: int) -> None:
-        clock = self.clock
-        due_us = clock.now_us + cost_us
-        if due_us < clock.limit_us:
-            clock.now_us = due_us
-            return
-        self._resume_at = clock.at(due_us, self._resume)
-        self._greenlet.parent.switch()
-
-    def _resume(self) -> None:
-        self._greenlet.parent = getcurrent()
-        self._greenlet.switch()
-
-    def _bite(self) -> None:
-        if self.clock.now_us < self._bite_us:
-            self._bite_at = self.clock.at(self._bite_us, self._bite)
-        else:
-            self._world.reset()
-
-    def _run(self) -> None:
-        world = self._world
-        given = {
-            "machine": machine_module(self),
-            "time": time_module(self),
-            "micropython": micropython_module(),
-            "gc": gc_module(),
-            "sys": sys_module(self.say),
-        }
-        modules = Modules(world.image, given, self.say, Files(self).open)
-        try:
-            for path in RUNS:
-                modules.run(path)
-        except (GreenletExit, KeyboardInterrupt):
-            raise
-        except BaseException as error:
-            world.crashes.append(Crash(self.clock.now_us, repr(error), traceback.format_exc()))
-        else:
-            world.crashes.append(Crash(self.clock.now_us, "main has ended", ""))
-
-    def _protest(self, cost_us: int) -> None:
-        """Answer for the hardware after the end; a loop that catches even this is left standing."""
-        self._protests += 1
-        while self._protests > _PROTESTS_MAX:
-            self._greenlet.parent.switch()
-        raise GreenletExit
+def execute(life: Life) -> None:
+    """Run the firmware of one life of the processor."""
+    given = {
+        "machine": machine_module(life),
+        "time": time_module(life),
+        "micropython": micropython_module(),
+        "gc": gc_module(),
+        "sys": sys_module(life.say),
+    }
+    modules = Modules(life.image, given, life.say, Files(life).open)
+    for path in RUNS:
+        modules.run(path)

@@ -1,0 +1,100 @@
+"""`machine` as the bench has it: each object stands for one of the bench, each access is a request.
+
+What a control step uses is written out below and allocates nothing; any other method is called by its name. Classes,
+constants and functions are those of the bench's own module, which tells them at the start.
+"""
+
+from bench import ADC as CONVERT
+from bench import DESK, FEED, I2C_READ, I2C_WRITE, MACHINE, PIN_GET, PIN_SET, UART_READ, UART_WRITE, Remote, line
+
+
+class Pin(Remote):
+    """A pin."""
+
+    kind = "Pin"
+
+    def value(self, level=None):
+        """Return the level, or set it."""
+        if level is None:
+            return line.ask(PIN_GET, self.which, 0)
+        line.post(PIN_SET, self.which, 1 if level else 0)
+        return None
+
+    __call__ = value
+
+
+class I2C(Remote):
+    """A bus."""
+
+    kind = "I2C"
+
+    def writeto_mem(self, addr, memaddr, buf, addrsize=8):
+        """Write `buf` from register `memaddr` on."""
+        if addrsize == 8:
+            line.ask(I2C_WRITE, self.which, addr << 8 | memaddr, buf)
+        else:
+            line.call(self.which, "writeto_mem", (addr, memaddr, buf), {"addrsize": addrsize})
+
+    def readfrom_mem_into(self, addr, memaddr, buf, addrsize=8):
+        """Fill `buf` from register `memaddr` on."""
+        if addrsize == 8:
+            line.ask(I2C_READ, self.which, addr << 8 | memaddr, None, len(buf))
+            line.take(buf)
+        else:
+            buf[:] = line.call(self.which, "readfrom_mem", (addr, memaddr, len(buf)), {"addrsize": addrsize})
+
+
+class UART(Remote):
+    """A serial port."""
+
+    kind = "UART"
+
+    def read(self, nbytes=0xFFFF):
+        """Return what has arrived, or None."""
+        return line.read(line.ask(UART_READ, self.which, 0, None, nbytes)) or None
+
+    def write(self, buf):
+        """Send what the buffer takes; return how much, or None."""
+        count = line.ask(UART_WRITE, self.which, 0, buf)
+        return count if count or not buf else None
+
+
+class ADC(Remote):
+    """An analogue input."""
+
+    kind = "ADC"
+
+    def read_u16(self):
+        """Return a conversion."""
+        return line.ask(CONVERT, self.which, 0)
+
+
+class WDT(Remote):
+    """The watchdog."""
+
+    kind = "WDT"
+
+    def feed(self):
+        """Start the time-out anew."""
+        line.post(FEED, self.which, 0)
+
+
+def _function(name):
+    return lambda *args: line.call(MACHINE, name, args)
+
+
+def _adopt(classes, values, functions) -> None:
+    """Take over what the bench's module has."""
+    here = globals()
+    for name in classes:
+        if name not in here:
+            here[name] = type(name, (Remote,), {"kind": name})
+        for constant in classes[name]:
+            setattr(here[name], constant, classes[name][constant])
+    for name in values:
+        here[name] = values[name]
+    for name in functions:
+        here[name] = _function(name)
+
+
+_adopt(*line.call(DESK, "contents"))

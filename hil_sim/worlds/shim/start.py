@@ -1,0 +1,83 @@
+"""The first thing a MicroPython process runs: the bench's hardware, time and flash take the place of its own.
+
+Then boot.py and main.py, as on a board. What escapes them is told to the bench, which records it as a crash.
+"""
+
+import io
+import sys
+import time
+
+import machine
+import vfs
+from bench import CRASH, DESK, FILES, line
+
+
+class Flash:
+    """The board's file system: all of it stands on the bench."""
+
+    def __init__(self) -> None:
+        self._folders = {""}
+        self._files = set(line.call(DESK, "paths"))
+        for path in self._files:
+            parts = path.split("/")
+            for depth in range(1, len(parts)):
+                self._folders.add("/".join(parts[:depth]))
+
+    def mount(self, readonly, mkfs) -> None:
+        """Nothing is to be prepared."""
+
+    def umount(self) -> None:
+        """Nothing is to be given back."""
+
+    def chdir(self, path) -> None:
+        """There is one folder to be in."""
+
+    def getcwd(self) -> str:
+        """Return that folder."""
+        return "/"
+
+    def stat(self, path):
+        """Return what `import` asks for: whether it is a file or a folder."""
+        name = path.strip("/")
+        if name not in self._files and name not in self._folders:
+            raise OSError(2)
+        return (0x8000 if name in self._files else 0x4000, 0, 0, 0, 0, 0, 0, 0, 0, 0)
+
+    def open(self, path, mode):
+        """Return a file of the flash."""
+        name = path.strip("/")
+        if "w" in mode:
+            self._files.add(name)
+            return line.call(FILES, "open", (name, mode))
+        data = line.call(DESK, "read", (name,))
+        return io.BytesIO(data) if "b" in mode else io.StringIO(data.decode())
+
+
+def run(name, space) -> None:
+    """Run a file of the flash, if there is one."""
+    try:
+        with open(name) as file:
+            text = file.read()
+    except OSError:
+        return
+    exec(compile(text, name, "exec"), space)
+
+
+def main() -> None:
+    """Boot."""
+    assert machine
+    assert time
+    vfs.umount("/")
+    vfs.mount(Flash(), "/")
+    sys.path[:] = ["", ".frozen", "/lib"]
+    space = {"__name__": "__main__"}
+    try:
+        run("boot.py", space)
+        run("main.py", space)
+    except BaseException as error:
+        told = io.StringIO()
+        sys.print_exception(error, told)
+        line.ask(CRASH, 0, 0, (repr(error) + "\n" + told.getvalue()).encode())
+
+
+main()
