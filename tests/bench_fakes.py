@@ -5,7 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from hil_sim.bench import Bench, Parts
+from hil_sim.worlds import cpython
 from hil_sim.worlds.image import Image
+
+EXECUTE = cpython.execute  # what runs the firmware where a test does not say
 
 PINS = """
 from machine import ADC, I2C, Pin, UART, WDT, reset, reset_cause
@@ -64,4 +67,4 @@ def bench_of(folder: Path, main: str, files: dict[str, str] | None = None, **opt
         path.write_text(text)
     plant = options.pop("plant", None) or FakePlant()
     parts = Parts([(0x60, output) for output in range(8)], [0.5] * 8, battery=options.pop("battery", None))
-    return Bench(parts, plant, Image.of_folder(folder), **options)
+    return Bench(parts, plant, Image.of_folder(folder), **{"execute": EXECUTE, **options})

@@ -1,10 +1,18 @@
-"""The firmware's world: its own modules, its own time, its own end."""
+"""The firmware's world: its own modules, its own time, its own end; the same in CPython and in real MicroPython."""
 
 import pytest
 
 from hil_sim.journal import PIN
+from hil_sim.worlds import cpython, micropython
 from hil_sim.worlds.costs import BOOT_US
 from tests.bench_fakes import bench_of
+
+
+@pytest.fixture(autouse=True, params=[cpython, micropython], ids=["cpython", "micropython"])
+def world(request, monkeypatch):
+    """Each test runs in both worlds."""
+    monkeypatch.setattr("tests.bench_fakes.EXECUTE", request.param.execute)
+    return request.param
 
 
 def said(bench) -> list[str]:
@@ -59,7 +67,7 @@ def test_two_modules_may_import_each_other(tmp_path):
     assert said(bench) == ["1"]
 
 
-@pytest.mark.parametrize("name", ["dataclasses", "typing", "os", "threading", "hil_sim", "numpy"])
+@pytest.mark.parametrize("name", ["dataclasses", "typing", "pathlib", "threading", "hil_sim", "numpy"])
 def test_what_a_board_does_not_have_cannot_be_imported(tmp_path, name):
     bench = run(tmp_path, f"try: import {name}\nexcept ImportError as error: print(error)")
 

@@ -4,7 +4,7 @@ A request is eight bytes (operation, object, ticks, length, argument) and its da
 Each tick that the process has read since its last request costs its time first, one by one, as it does in T1: so
 both worlds spend the same time in the same pieces, and everything that is due in between happens in the same order.
 
-    desk = Desk(processor)
+    desk = Desk(processor, say=print)
     answer = desk.serve(request, data)  # None: the request was posted
 """
 
@@ -35,7 +35,8 @@ _OBJECTS_MAX = 256
 class Desk:
     """The objects of one life of the processor, by the numbers under which its process knows them."""
 
-    def __init__(self, processor: Processor) -> None:
+    def __init__(self, processor: Processor, say: Callable[[str], None]) -> None:
+        self.say = say
         self._processor = processor
         self._machine = machine_module(processor)
         self._sleep_us: Callable[[int], None] = time_module(processor).sleep_us

@@ -27,7 +27,7 @@ _CHUNK = 65_536
 
 def execute(life: Life) -> None:
     """Run the firmware of one life of the processor; Crashed when it ends or cannot be run."""
-    desk = Desk(life)
+    desk = Desk(life, life.say)
     process = Process(life.say)
     try:
         while True:

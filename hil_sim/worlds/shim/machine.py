@@ -9,9 +9,18 @@ from bench import DESK, FEED, I2C_READ, I2C_WRITE, MACHINE, PIN_GET, PIN_SET, UA
 
 
 class Pin(Remote):
-    """A pin."""
+    """A pin; the same object for the same number."""
 
     kind = "Pin"
+    _known = {}
+
+    def __new__(cls, *args, **options):
+        pin = super().__new__(cls)
+        Remote.__init__(pin, *args, **options)
+        return cls._known.setdefault(pin.which, pin)
+
+    def __init__(self, *args, **options) -> None:
+        pass
 
     def value(self, level=None):
         """Return the level, or set it."""

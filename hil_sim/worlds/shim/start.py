@@ -3,6 +3,7 @@
 Then boot.py and main.py, as on a board. What escapes them is told to the bench, which records it as a crash.
 """
 
+import builtins
 import io
 import sys
 import time
@@ -53,6 +54,22 @@ class Flash:
         return io.BytesIO(data) if "b" in mode else io.StringIO(data.decode())
 
 
+def say(*values, sep=" ", end="\n", file=None) -> None:
+    """Print on the console of the bench, or into a file."""
+    text = sep.join([str(value) for value in values]) + end
+    if file is None:
+        line.call(DESK, "say", (text,))
+    else:
+        file.write(text)
+
+
+def told(error) -> str:
+    """Return an exception as the bench records it: itself in the first line, then where it came from."""
+    trace = io.StringIO()
+    sys.print_exception(error, trace)
+    return f"{type(error).__name__}({', '.join([repr(value) for value in error.args])})\n{trace.getvalue()}"
+
+
 def run(name, space) -> None:
     """Run a file of the flash, if there is one."""
     try:
@@ -65,8 +82,7 @@ def run(name, space) -> None:
 
 def main() -> None:
     """Boot."""
-    assert machine
-    assert time
+    builtins.print = say
     vfs.umount("/")
     vfs.mount(Flash(), "/")
     sys.path[:] = ["", ".frozen", "/lib"]
@@ -75,9 +91,7 @@ def main() -> None:
         run("boot.py", space)
         run("main.py", space)
     except BaseException as error:
-        told = io.StringIO()
-        sys.print_exception(error, told)
-        line.ask(CRASH, 0, 0, (repr(error) + "\n" + told.getvalue()).encode())
+        line.ask(CRASH, 0, 0, told(error).encode())
 
 
 main()
