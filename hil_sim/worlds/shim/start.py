@@ -6,9 +6,9 @@ Then boot.py and main.py, as on a board. What escapes them is told to the bench,
 import builtins
 import io
 import sys
-import time
+import time  # noqa: F401
 
-import machine
+import machine  # noqa: F401  (found here, before the flash takes the place of this folder)
 import vfs
 from bench import CRASH, DESK, FILES, line
 
