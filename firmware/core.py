@@ -26,7 +26,7 @@ UPTIME_MAX_MS = 1 << 29  # six days; a board's small integers end at 2**30
 class Core:
     """One robot. `board` gives pins and chips, `profile` labels and limits, `boot` names this start."""
 
-    def __init__(self, board, profile, boot: int, after_reset: bool = False) -> None:
+    def __init__(self, board, profile, boot: int, after_reset: bool = False, loud: int = 0) -> None:
         self.board = board
         self.profile = profile
         self.boot = boot
@@ -39,6 +39,7 @@ class Core:
         self.lease_ms = 0  # of the session that armed
         self.now_ms = 0
         self._after_reset = after_reset
+        self._loud = loud  # a PWM chip that boot.py could not switch off
         chips = _chips(board, profile)
         self.monitor = board.monitor(profile.supply.shunt_mohm)
         outputs = [(chips[channel.chip], channel.output) for channel in profile.channels]
@@ -168,6 +169,8 @@ class Core:
             self.sense.begin_supply()
         except OSError:
             self.trip(codes.CHIP)
+        if self._loud:
+            self.trip(codes.CHIP, 255, self._loud)
         if self._after_reset:
             self.trip(codes.WATCHDOG)
 

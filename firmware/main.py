@@ -8,28 +8,32 @@ from machine import WDT_RESET, reset, reset_cause
 from firmware.boards import pico
 from firmware.core import Core
 from firmware.profile import Profile
+from firmware.trial import Trial
 
 STEP_MS = 5
 
 
-def run() -> None:
-    """Serve for ever. An error opens the coil supply and is left to the watchdog, which restarts the firmware."""
+def run(loud: int = 0, confirm=None) -> None:
+    """Serve for ever. An error opens the coil supply and is left to the watchdog, which restarts the firmware.
+
+    `loud` is the PWM chip that boot.py could not switch off, `confirm` keeps the slot of a program that is on trial.
+    """
     board = pico.Board()
     try:
         with open(sys.path[0] + "/robot.json", "rb") as file:
-            core = Core(board, Profile(file.read()), pico.boot_number(), reset_cause() == WDT_RESET)
-        loop(board, core)
+            core = Core(board, Profile(file.read()), pico.boot_number(), reset_cause() == WDT_RESET, loud)
+        loop(board, core, Trial(confirm))
     finally:
         board.power(False)
     reset()
 
 
-def loop(board: pico.Board, core: Core) -> None:
-    """Step the core at its period until its clock must begin anew; a late step is counted, not caught up."""
+def loop(board: pico.Board, core: Core, trial: Trial) -> None:
+    """Step the core at its period until its clock must begin anew, or its trial is lost; a late step is counted."""
     now_ms = 0
     last = time.ticks_ms()
     due = last
-    while not core.may_restart():
+    while not (core.may_restart() or trial.over(now_ms, core)):
         board.write(core.step(now_ms, board.read(), board.room()))
         board.feed()
         due = time.ticks_add(due, STEP_MS)

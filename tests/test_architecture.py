@@ -21,7 +21,7 @@ MAY_IMPORT = {
 ON_A_BOARD = {"array", "binascii", "collections", "gc", "json", "machine", "micropython", "os", "struct", "sys", "time"}
 RUN_BY_THE_BOARD = ("firmware/boot.py", "firmware/start.py")
 IN_A_PROCESS_OF_ITS_OWN = ("hil_sim", "worlds", "shim")  # MicroPython's modules of world T2, which are the machine
-KNOW_THE_MACHINE = ("firmware/boot.py", "firmware/main.py")
+KNOW_THE_MACHINE = (*RUN_BY_THE_BOARD, "firmware/main.py")
 WALL_CLOCK = {
     "monotonic",
     "monotonic_ns",

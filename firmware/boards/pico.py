@@ -31,7 +31,7 @@ class Board:
         self._uart = UART(0, baudrate=BAUD, tx=Pin(0), rx=Pin(1), txbuf=BUFFER_BYTES, rxbuf=BUFFER_BYTES)
         self._quiet_ms = time.ticks_ms()  # when the line will have sent all that was written
         self._thermistor = ADC(Pin(26))
-        self._watchdog = WDT(timeout=WATCHDOG_MS)
+        self.watch()
 
     def pwm(self, address: int) -> Pca9685:
         """Return the driver of the PWM chip at that address."""
@@ -78,6 +78,10 @@ class Board:
             begin_ms = self._quiet_ms if time.ticks_diff(self._quiet_ms, now_ms) > 0 else now_ms
             self._quiet_ms = time.ticks_add(begin_ms, 1 + len(data) * 10_000 // BAUD)
             self._uart.write(data)
+
+    def watch(self) -> None:
+        """Give the watchdog its short period."""
+        self._watchdog = WDT(timeout=WATCHDOG_MS)
 
     def feed(self) -> None:
         """Keep the watchdog quiet for another period."""

@@ -23,6 +23,7 @@ from types import ModuleType, SimpleNamespace
 from typing import Any, NoReturn
 
 from hil_sim.worlds.image import Image
+from hil_sim.worlds.world import Interrupted
 
 SHARED: dict[str, ModuleType] = {
     module.__name__: module
@@ -43,7 +44,8 @@ class Modules:
         self._image = image
         self._say = say
         self.loaded: dict[str, ModuleType] = {**SHARED, **given}
-        self._builtins = {**vars(builtins), "__import__": self._import, "open": open_file, "print": self._print}
+        own = {"__import__": self._import, "open": open_file, "print": self._print, "KeyboardInterrupt": Interrupted}
+        self._builtins = {**vars(builtins), **own}
 
     def run(self, path: str) -> None:
         """Execute a file as the board runs boot.py and main.py: in `__main__`. A missing one is passed over."""

@@ -41,6 +41,10 @@ class Crashed(Exception):
         self.trace = trace
 
 
+class Interrupted(BaseException):
+    """The board's KeyboardInterrupt: Ctrl-C on its console, not on that of the bench."""
+
+
 class World:
     """A processor with its flash. `crashes` lists what escaped the firmware, `console` what it printed."""
 
@@ -79,6 +83,11 @@ class World:
         """Stop executing: as when the firmware is caught in a loop. The watchdog goes on."""
         if self._life is not None:
             self._life.pause()
+
+    def interrupt(self) -> None:
+        """Press Ctrl-C on the board's console."""
+        if self._life is not None:
+            self._life.interrupt()
 
     def close(self) -> None:
         """End the firmware for good."""
@@ -120,10 +129,14 @@ class Life:
         return self.clock.now_us - self._ticks_zero_us
 
     def watch(self, timeout_us: int) -> None:
-        """Start the watchdog, or start its time-out anew."""
-        self._bite_us = self.clock.now_us + timeout_us
+        """Start the watchdog, or start its time-out anew, which may be shorter than the last."""
+        bite_us = self.clock.now_us + timeout_us
+        if self._bite_at is not None and bite_us < self._bite_us:
+            self._bite_at.cancel()
+            self._bite_at = None
+        self._bite_us = bite_us
         if self._bite_at is None:
-            self._bite_at = self.clock.at(self._bite_us, self._bite)
+            self._bite_at = self.clock.at(bite_us, self._bite)
 
     def reset(self) -> None:
         """Reset the processor from within; control never comes back to the firmware."""
@@ -134,6 +147,13 @@ class Life:
         """Take the board's supply away for an instant; control never comes back to the firmware."""
         self._resume_at = self.clock.at(self.clock.now_us, self._world.power_on)
         self._greenlet.parent.switch()
+
+    def interrupt(self) -> None:
+        """Raise the board's KeyboardInterrupt where the firmware is."""
+        if self.running:
+            self.pause()
+            self._greenlet.parent = getcurrent()
+            self._greenlet.throw(Interrupted)
 
     def pause(self) -> None:
         """Never execute again."""
