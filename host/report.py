@@ -68,7 +68,10 @@ def report(ending: Ending | None, recording: Recording, facts: Facts) -> Fields:
         "link": facts.statistics,
     }
     if facts.observer is not None:
-        fields["observed"] = _rounded(facts.observer.observe())
+        observed = facts.observer.observe()
+        if "trace_sha256" in observed:
+            fields["trace_sha256"] = observed.pop("trace_sha256")
+        fields["observed"] = _rounded(observed)
     took = facts.took
     fields["wall"] = {"time_s": round(took.wall_s, 3), "real_time_factor": round(took.line_s / took.wall_s, 1)}
     return fields

@@ -1,0 +1,136 @@
+"""The firmware that runs in CPython and the one that runs in real MicroPython do the same thing at the same time.
+
+One hash covers every bus transfer, pin edge, conversion, flash operation and byte on the line with its time: it is
+compared over whole scripts, with faults, looked at often or seldom, and is shown to feel the smallest difference.
+"""
+
+import json
+from functools import cache
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from hil_sim.faults import schedule
+from hil_sim.link import open_link
+from host.cli import main
+from host.robot import Robot
+
+GAITS = sorted(Path("gaits").glob("*.gait"))
+WORLDS = ("cpython", "micropython")
+BRIEF = """gait 1
+robot circular
+repeat 2:
+    fire A at 100 % for 200 ms until 60 C
+    together:
+        fire {first} at 60 % for 150 ms
+        fire {second} at 40 % for 150 ms ramp 100 ms
+    wait until any.temperature < 100 C timeout 1 s else continue
+"""
+
+
+def report(script, address):
+    """Run a script and return its report, whatever came of it."""
+    result = CliRunner().invoke(main, ["run", str(script), "--robot", address, "--json"])
+    return json.loads(result.stdout.splitlines()[-1])
+
+
+@cache
+def traced(script, robot, world):
+    """Return the trace and the outcome of a script that comes with softrig."""
+    done = report(script, f"sim:{robot}?world={world}")
+    return done["trace_sha256"], done["result"], done["duration_s"]
+
+
+@pytest.fixture
+def brief(tmp_path):
+    """Return a short script on file that fires two coils in that order."""
+
+    def written(first="B", second="C"):
+        path = tmp_path / f"{first}{second}.gait"
+        path.write_text(BRIEF.format(first=first, second=second))
+        return path
+
+    return written
+
+
+def robot_of(path):
+    """Return the robot that a script names."""
+    return next(line.split()[1] for line in path.read_text().splitlines() if line.startswith("robot "))
+
+
+@pytest.mark.parametrize("path", GAITS, ids=lambda path: path.stem)
+def test_every_script_leaves_the_same_trace_in_both_worlds(path):
+    here, there = (traced(path, robot_of(path), world) for world in WORLDS)
+
+    assert here == there
+    assert here[1] == "done"
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_two_runs_of_one_seed_leave_the_same_trace_and_another_seed_another(brief, world):
+    one, again, other = (report(brief(), f"sim:circular?world={world}&seed={seed}") for seed in (1, 1, 2))
+
+    assert one["trace_sha256"] == again["trace_sha256"] != other["trace_sha256"]
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_one_coil_order_more_or_less_or_changed_changes_the_trace(brief, world):
+    bc, cb, bd = (report(brief(*coils), f"sim:circular?world={world}") for coils in ("BC", "CB", "BD"))
+
+    assert len({run["trace_sha256"] for run in (bc, cb, bd)}) == 3
+
+
+def driven(world, step_s, faults=(), pause=False):
+    """Fire two coils on a bench that is looked at every `step_s` and return its trace."""
+    link = open_link(f"sim:circular?world={world}&body=still")
+    robot = Robot(link)
+    robot.connect()
+    robot.arm()
+    robot.fire(["A", "C"], 600, 300)
+    begun_us = link.bench.clock.now_us
+    for after_us, fault in faults:
+        schedule(link.bench, begun_us + after_us, fault)
+    until_us = begun_us + 1_500_000
+    while (left_us := until_us - link.bench.clock.now_us) > 0:
+        link.bench.run(min(step_s, left_us / 1e6))
+        if pause:
+            link.bench.observe()
+            link.bench.snapshot()
+    trace = link.bench.trace_sha256()
+    link.close()
+    return trace
+
+
+def test_how_fast_and_how_often_the_bench_is_driven_does_not_change_the_trace():
+    traces = {driven(world, step_s) for world in WORLDS for step_s in (1.5, 0.0137, 0.001)}
+
+    assert len(traces) == 1
+
+
+def test_a_pause_to_look_at_the_robot_does_not_change_the_trace():
+    assert driven("micropython", 0.1, pause=True) == driven("cpython", 1.5)
+
+
+@pytest.mark.parametrize(
+    "faults",
+    [
+        ["cable-cut"],
+        ["hang"],
+        ["reset"],
+        ["power-cycle"],
+        ["pwm-dead"],
+        ["monitor-forgets"],
+        ["bus-stuck", "bus-free"],
+        ["thermistor-short"],
+        ["estop-open", "estop-close"],
+        ["coil-open:A"],
+    ],
+    ids=lambda faults: " ".join(faults),
+)
+def test_a_fault_leaves_the_same_trace_in_both_worlds(faults):
+    plan = [(100_000 + 137_000 * turn, fault) for turn, fault in enumerate(faults)]
+
+    here, there = (driven(world, 0.05, plan) for world in WORLDS)
+
+    assert here == there != driven("cpython", 0.05)
