@@ -18,7 +18,7 @@ SHORT = {
     "mu": "ground.friction_ratio",
     "supply": "wiring.supply_v",
 }
-OPTIONS = (*SHORT, "seed", "set", "open", "world", "baud", "body")
+OPTIONS = (*SHORT, "seed", "set", "open", "world", "baud", "body", "faults")
 WORLDS = ("cpython", "micropython")
 BODIES = ("moving", "still")
 BAUD_MAX = 4_000_000
@@ -39,6 +39,7 @@ class Address:
     baud: int = 115_200
     open: tuple[str, ...] = ()  # coils whose wire is broken
     body: str = BODIES[0]
+    faults: str = ""  # path of a fault file
 
 
 def parse(text: str) -> Address:
@@ -71,6 +72,8 @@ def _take(address: Address, name: str, value: str) -> None:
         address.seed = _whole(name, value, 0, 2**32 - 1)
     elif name == "baud":
         address.baud = _whole(name, value, 300, BAUD_MAX)
+    elif name == "faults":
+        address.faults = value
     elif name == "body":
         address.body = _one_of(name, value, BODIES)
     else:

@@ -1,10 +1,13 @@
 """Puts a bench together from an address: robot file, body, wires and firmware image."""
 
 import json
+from pathlib import Path
 
 from hil_sim.address import BODIES, Address
 from hil_sim.bench import Bench, Parts, Plant
 from hil_sim.devices.ntc import Ntc
+from hil_sim.faultfile import load as load_faults
+from hil_sim.faultfile import plan
 from hil_sim.faults import schedule
 from hil_sim.plant import RingPlant
 from hil_sim.robotcheck import near
@@ -20,7 +23,11 @@ from hil_sim.worlds.world import Interpreter
 
 
 def assemble(address: Address) -> Bench:
-    """Return the bench of an address, powered on at time 0; RobotFileError when its robot cannot be built."""
+    """Return the bench of an address, powered on at time 0.
+
+    RobotFileError when its robot cannot be built, FaultFileError when its fault file cannot be used.
+    """
+    faults = load_faults(Path(address.faults)) if address.faults else []
     robot = load(address.robot, address.overrides)
     for label in address.open:
         if label not in robot.labels:
@@ -37,6 +44,7 @@ def assemble(address: Address) -> Bench:
         raise RobotFileError(f"{robot.name} cannot be built from these numbers: {error}") from error
     for label in address.open:
         schedule(bench, bench.clock.now_us, f"coil-open:{label}")
+    plan(bench, faults)
     return bench
 
 

@@ -41,6 +41,7 @@ class Speed(click.FloatRange):
 @click.option("--speed", type=Speed(0.01, 100), default=1.0, help="Virtual seconds in one real second.")
 @click.option("--seed", type=click.IntRange(0, 2**32 - 1), help="Identity of the run.")
 @click.option("--slope", type=float, help="Slope of the ground in degrees, uphill positive.")
+@click.option("--faults", type=click.Path(dir_okay=False), help="Let the faults of this file happen.")
 @click.option("--json", "as_json", is_flag=True, help="One JSON object per line.")
 def sim(
     name: str,
@@ -49,6 +50,7 @@ def sim(
     speed: float,
     seed: int | None,
     slope: float | None,
+    faults: str | None,
     as_json: bool,
 ) -> None:
     """Run a robot on the bench behind a serial port, in real time.
@@ -60,7 +62,7 @@ def sim(
     from hil_sim.ports import PortError  # noqa: PLC0415
     from hil_sim.soundness import CameApart  # noqa: PLC0415
 
-    bench = _bench(name, seed, slope)
+    bench = _bench(name, seed, slope, faults)
     try:
         bench.clock.run_until(BOOTED_US)
         _serve(bench, name, link, tcp, speed, as_json)
@@ -89,12 +91,13 @@ def robots(as_json: bool) -> None:
         _say(as_json, fields, f"{address:13} {len(labels):2} coils  {robot.about}\n{coils}")
 
 
-def _bench(name: str, seed: int | None, slope: float | None) -> Bench:
+def _bench(name: str, seed: int | None, slope: float | None, faults: str | None) -> Bench:
     from hil_sim.address import parse  # noqa: PLC0415
 
     try:
         address = parse(name)
         _override(address, seed, slope)
+        address.faults = faults or address.faults
         return _assembled(address)
     except LookupError as error:
         raise NoRobot(str(error)) from error

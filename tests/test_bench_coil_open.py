@@ -54,8 +54,8 @@ def test_a_mended_coil_is_as_it_was(bench):
 @pytest.mark.parametrize(
     ("fault", "told"),
     [
-        ("coil-open", "fault coil-open: name a coil of this robot, as in coil-open:A"),
-        ("coil-open:Z", "fault coil-open:Z: name a coil of this robot"),
+        ("coil-open", "fault coil-open: write coil-open:LABEL"),
+        ("coil-open:Z", "fault coil-open:Z: name a coil of this robot, as in coil-open:A"),
         ("coil-opn:A", "no fault 'coil-opn:A': known are .*coil-open.*did you mean coil-open"),
     ],
 )

@@ -136,7 +136,7 @@ def test_full_duty_trips_the_heat_budget_before_the_coil_burns(rig):
     assert rig.bench.coil("A").peak_degc < 150
 
 
-@pytest.mark.parametrize("chip", ["pwm-dead", "monitor-dead", "monitor-forgets", "bus-stuck"])
+@pytest.mark.parametrize("chip", ["pwm-dead", "monitor-dead", "monitor-forgets", "i2c-stuck"])
 def test_a_chip_that_fails_opens_the_coil_supply(rig, chip):
     rig.fire("A", duty_percent=60, hold_s=5)
 
@@ -187,7 +187,7 @@ def test_after_its_program_ended_no_coil_is_on_and_the_supply_is_open(rig):
 def test_a_bus_held_low_is_told_also_after_a_reset(rig):
     """Each transfer on a stuck bus costs its time-out; the watchdog must still be fed and the fault told."""
     rig.fire("A", duty_percent=60, hold_s=5)
-    rig.happens("bus-stuck")
+    rig.happens("i2c-stuck")
     rig.happens("reset")
     rig.run_alone(seconds=3)
     resets = rig.bench.world.resets
