@@ -117,9 +117,9 @@ class CanWire:
 
     def _occupy(self, senders: dict[Node, Frame]) -> None:
         """Put the frame that has won on the wire, for as long as it will last."""
+        passage = Passage(senders, [node for node in self._present() if node not in senders])
         for node in list(self.nodes):
             node.began() if node in senders else node.edge()
-        passage = Passage(senders, [node for node in self._present() if node not in senders])
         if passage.whole and self._spoiled:
             self._spoiled -= 1
             passage.fail(len(passage.bits) // 2)
