@@ -1,0 +1,204 @@
+"""Which program a board runs: the slot of its boot record, a new one on trial, and the way back from a bad one."""
+
+import pytest
+
+from firmware.core import Core
+from firmware.profile import Profile
+from hil_sim.worlds import cpython, micropython
+from protocol import codes, messages
+from tests.firmware_bench import Table
+from tests.slot_bench import CONFIRMED, NOWHERE, PROFILE, REAL, fields, record, said, slot_bench, small
+
+WORLDS = pytest.mark.parametrize("execute", [cpython.execute, micropython.execute], ids=["cpython", "micropython"])
+BOTH = {"a": small("a"), "b": small("b")}
+
+
+def program(run: str) -> dict[str, bytes]:
+    """Return the files of a slot whose program is one function body."""
+    return {"firmware/main.py": f"import time\ndef run(loud, confirm):\n    {run}\n".encode()}
+
+
+def settled(bench, seconds: float = 1.0):
+    """Run a bench for a while and return it, closed."""
+    bench.run(seconds)
+    bench.close()
+    return bench
+
+
+@WORLDS
+def test_a_board_without_a_record_runs_slot_a_and_writes_nothing(execute):
+    bench = settled(slot_bench(BOTH, execute=execute))
+
+    assert said(bench) == ["a"]
+    assert bench.board.flash.operations == 0
+
+
+@WORLDS
+def test_a_new_program_confirms_its_slot(execute):
+    bench = settled(slot_bench(BOTH, record(1, tries=3, fallback=0), execute))
+
+    assert said(bench) == ["b", "softrig: confirmed"]
+    assert fields(bench) == (1, CONFIRMED, 0, 0)
+
+
+def test_the_firmware_confirms_itself_after_five_healthy_seconds():
+    bench = slot_bench({"a": small("a"), "b": REAL}, record(1, tries=3, fallback=0))
+
+    bench.run(4.9)
+    assert fields(bench) == (1, 2, 0, 0)
+    bench.run(1.0)
+
+    assert fields(bench) == (1, CONFIRMED, 0, 0)
+    assert bench.world.resets == 0
+    bench.close()
+
+
+BAD = {
+    "raises at import": {"firmware/main.py": b"raise ValueError('bad')"},
+    "is not there": {},
+    "is no Python": {"firmware/main.py": b"def run(:"},
+    "raises": program("raise ValueError('bad')"),
+    "ends": program("return"),
+    "hangs": program("while True: time.sleep_ms(5)"),
+    "trips at once": {**REAL, "robot.json": REAL["robot.json"].replace(b'"chip": 96', b'"chip": 98')},
+}
+
+
+@WORLDS
+@pytest.mark.parametrize("what", BAD)
+def test_a_bad_program_is_tried_three_times_and_rolled_back_by_itself(what, execute):
+    slots = {"a": small("a"), "b": BAD[what]}
+
+    bench = settled(slot_bench(slots, record(1, tries=3, fallback=0), execute), 3 * 10 + 3)
+
+    assert said(bench)[-1] == "a"
+    assert fields(bench) == (0, CONFIRMED, NOWHERE, 0)
+    assert bench.world.resets == 3
+
+
+def test_a_program_that_dies_before_it_was_healthy_has_used_a_try():
+    bench = slot_bench({"a": small("a"), "b": REAL}, record(1, tries=3, fallback=0))
+    bench.run(3)
+    bench.world.hang()
+
+    bench.run(3)
+
+    assert fields(bench) == (1, 1, 0, 0)
+    bench.close()
+
+
+def test_an_open_emergency_stop_is_not_the_programs_fault():
+    bench = slot_bench({"a": small("a"), "b": REAL}, record(1, tries=3, fallback=0))
+    bench.board.set_estop(False)
+
+    bench.run(6)
+
+    assert fields(bench) == (1, CONFIRMED, 0, 0)
+    bench.close()
+
+
+def test_a_bad_first_program_leaves_the_board_to_its_console():
+    bench = settled(slot_bench({"a": program("raise ValueError")}, record(0, tries=3)), 4 * 9)
+
+    assert said(bench)[-1] == "softrig: service"
+    assert bench.world.resets == 3
+
+
+@WORLDS
+def test_the_service_mark_counts_once(execute):
+    bench = slot_bench(BOTH, record(1, service=1), execute)
+    bench.run(0.5)
+    assert said(bench) == ["softrig: service"]
+    assert not bench.board.powered
+
+    bench.world.reset()
+    settled(bench)
+
+    assert said(bench)[1:] == ["b"]
+
+
+def test_the_strap_leaves_the_board_to_its_console():
+    bench = slot_bench(BOTH, record(1))
+    bench.board.gpio.sources[22] = lambda: 0
+
+    settled(bench, 20)
+
+    assert said(bench) == ["softrig: service"]
+    assert bench.world.resets == 0  # and no watchdog
+
+
+def test_ctrl_c_on_the_console_switches_off_and_asks_for_service():
+    bench = slot_bench({"a": REAL})
+    bench.run(1)
+
+    bench.world.interrupt()
+    settled(bench)
+
+    assert said(bench) == ["softrig: service"]
+    assert bench.world.resets == 1
+    assert not bench.board.powered
+
+
+def test_a_record_that_is_torn_in_both_copies_is_no_record():
+    bench = slot_bench(BOTH, record(1)[:-1])
+    bench.board.flash.store("boot.0", b"")
+
+    assert said(settled(bench)) == ["a"]
+
+
+def test_the_newer_copy_of_the_record_counts():
+    bench = slot_bench(BOTH, record(1, sequence=7))
+    bench.board.flash.store("boot.0", record(0, sequence=6))
+
+    assert said(settled(bench)) == ["b"]
+
+
+@pytest.mark.parametrize("operation", range(1, 9))
+@pytest.mark.parametrize("what", ["is not there", "is well"])
+def test_a_power_cut_at_any_write_to_the_record_ends_in_a_program_that_lives(what, operation):
+    slots = {"a": small("a"), "b": BAD[what] if what in BAD else small("b")}
+    bench = slot_bench(slots, record(1, tries=2, fallback=0))
+    bench.board.flash.cut_at = operation
+
+    settled(bench, 40)
+
+    assert said(bench)[-1] in (["a"] if what in BAD else ["b", "softrig: confirmed"])
+    assert fields(bench)[:2] == (0 if what in BAD else 1, CONFIRMED)
+
+
+@WORLDS
+def test_boot_tells_the_program_of_a_chip_that_answers_but_is_not_off(execute):
+    bench = slot_bench({"a": program("print(loud)\n    while True: time.sleep_ms(5)")}, execute=execute)
+    chip = bench.board.pwm[0x61]
+    chip.reset = lambda: None
+    chip._store_count = lambda register, byte: None
+    chip.registers[6 + 4 * 15 + 3] = 0
+
+    settled(bench)
+
+    assert said(bench) == [str(0x61)]
+
+
+@WORLDS
+def test_boot_switches_off_what_the_chips_were_driving_when_the_processor_was_reset(execute):
+    bench = slot_bench(BOTH, execute=execute)
+    bench.run(0.1)
+    for chip in bench.board.pwm.values():
+        chip.reset = lambda: None  # and the general call is lost on it
+        chip.write(chip.address, bytes((0, 0x20)))
+        chip.write(chip.address, bytes((6, 0, 0x10, 0, 0)))
+
+    bench.world.reset()
+    settled(bench, 0.1)
+
+    for chip in bench.board.pwm.values():
+        assert chip.registers[0] == 0x30
+        assert all(high & 0x10 for high in chip.registers[9:70:4])
+
+
+def test_a_chip_that_is_not_off_trips_the_core():
+    core = Core(Table(), Profile(PROFILE), 1, loud=0x61)
+
+    core.step(0, b"", 1024)
+
+    assert (core.state, core.code) == (messages.TRIPPED, codes.CHIP)
