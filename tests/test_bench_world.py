@@ -164,6 +164,25 @@ print(uart.read(), uart.readinto(bytearray(4)), uart.any(), uart.write(bytes(300
     assert said(run(tmp_path, main)) == ["None None 0 256 None"]
 
 
+@pytest.mark.parametrize("wait", ["time.sleep_ms(5)", "beat.toggle()", "beat.value(1)", "time.ticks_ms()"])
+def test_an_interrupt_on_the_console_is_raised_where_the_firmware_is(tmp_path, wait):
+    main = f"""
+try:
+    while True: {wait}
+except KeyboardInterrupt:
+    print("interrupted")
+    while True: time.sleep_ms(5)
+"""
+    bench = bench_of(tmp_path, main)
+    bench.clock.run_until(BOOT_US + 20_000)
+    bench.world.interrupt()
+    bench.clock.run_until(BOOT_US + 30_000)
+    bench.close()
+
+    assert said(bench) == ["interrupted"]
+    assert bench.crashes == []
+
+
 def test_a_crash_is_reported_with_its_line_and_the_firmware_stays_dead(tmp_path):
     bench = run(tmp_path, "time.sleep_ms(10)\nraise ValueError('no')")
 

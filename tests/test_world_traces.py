@@ -126,7 +126,7 @@ def test_a_pause_to_look_at_the_robot_does_not_change_the_trace():
         ["estop-open", "estop-close"],
         ["coil-open:A"],
     ],
-    ids=lambda faults: " ".join(faults),
+    ids=" ".join,
 )
 def test_a_fault_leaves_the_same_trace_in_both_worlds(faults):
     plan = [(100_000 + 137_000 * turn, fault) for turn, fault in enumerate(faults)]

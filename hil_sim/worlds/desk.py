@@ -20,15 +20,17 @@ from hil_sim.worlds.lines import I2C, UART
 from hil_sim.worlds.machine import WDT, machine_module, time_module
 from hil_sim.worlds.pins import ADC, Pin
 from hil_sim.worlds.processor import Processor
-from hil_sim.worlds.world import Crashed
+from hil_sim.worlds.world import Crashed, Interrupted
 
-PIN_SET, PIN_GET, I2C_WRITE, I2C_READ, UART_READ, UART_WRITE, CONVERT, FEED, SLEEP, TIME, CALL, CRASH = range(12)
+PIN_SET, PIN_GET, I2C_WRITE, I2C_READ, UART_READ, UART_WRITE, CONVERT, FEED, SLEEP, TIME, CALL, CRASH, READ = range(13)
+POSTED = (PIN_SET, FEED)  # they have no answer
 WITHOUT_DATA = (I2C_READ, UART_READ)  # their length is how many bytes are wanted
-DONE, OS_ERROR, OTHER_ERROR = 0, 1, 2
+DONE, OS_ERROR, OTHER_ERROR, INTERRUPTED = range(4)
 FILLED = {"readinto": 0, "readfrom_into": 1, "readfrom_mem_into": 2, "write_readinto": 1}  # which argument is filled
 Request = tuple[int, int, int, int, int]  # operation, object, ticks, length, argument
 HEAD = Struct("<BBHHH")
 _ANSWER = Struct("<QQ")
+_PIECE = Struct("<II")  # of a file: where it begins, how long it is
 _OBJECTS_MAX = 256
 
 
@@ -37,31 +39,36 @@ class Desk:
 
     def __init__(self, processor: Processor, say: Callable[[str], None]) -> None:
         self.say = say
+        self._interrupted = False
         self._processor = processor
         self._machine = machine_module(processor)
         self._sleep_us: Callable[[int], None] = time_module(processor).sleep_us
         self._objects: list[Any] = [self._machine, Files(processor), self]
         self._acts = (
             self._pin_set, self._pin_get, self._i2c_write, self._i2c_read, self._uart_read, self._uart_write,
-            self._convert, self._feed, self._sleep, self._time, self._call, self._crash,
+            self._convert, self._feed, self._sleep, self._time, self._call, self._crash, self._read,
         )  # fmt: skip
 
     def serve(self, head: Request, data: bytes) -> bytes | None:
         """Serve one request; return the answer, or None when it needs none."""
         op, which, ticks, length, argument = head
-        for _ in range(ticks):
-            self._processor.spend(TICKS_US)
         try:
+            for _ in range(ticks):
+                self._processor.spend(TICKS_US)
             value, extra = self._acts[op](self._objects[which], length, argument, data)
+            status = DONE
+        except Interrupted:
+            value, extra, status = 0, b"", INTERRUPTED
         except OSError as error:
             value, extra, status = int(error.args[0]), b"", OS_ERROR
         except (ValueError, TypeError, AttributeError, RuntimeError) as error:
             extra, status = json.dumps([type(error).__name__, str(error)]).encode(), OTHER_ERROR
             value = len(extra)
-        else:
-            status = DONE
-        if op in (PIN_SET, FEED):
+        if op in POSTED:
+            self._interrupted |= status == INTERRUPTED  # felt with the next request that is answered
             return None
+        if self._interrupted:
+            self._interrupted, value, extra, status = False, 0, b"", INTERRUPTED
         return _ANSWER.pack(self._processor.ticks_us(), value << 8 | status) + extra
 
     def contents(self) -> list[Any]:
@@ -76,9 +83,9 @@ class Desk:
         """Return the paths of all files on the flash."""
         return self._processor.board.flash.paths()
 
-    def read(self, path: str) -> bytes:
-        """Return a file of the flash: what is imported, or opened for reading, costs no time."""
-        return self._processor.board.flash.read(path)
+    def size(self, path: str) -> int:
+        """Return the size of a file of the flash: to import it, or to open it for reading, costs no time."""
+        return len(self._processor.board.flash.read(path))
 
     def _pin_set(self, pin: Pin, length: int, level: int, data: bytes) -> tuple[int, bytes]:
         pin.value(level)
@@ -122,12 +129,18 @@ class Desk:
         result = getattr(self._objects[which], name)(*args, **options)
         if name in FILLED:
             result = args[FILLED[name]]
+        if name == "close":
+            self._objects[which] = None
         said = json.dumps(self._plain(result)).encode()
         return len(said), said
 
     def _crash(self, module: ModuleType, length: int, argument: int, data: bytes) -> tuple[int, bytes]:
         error, _, trace = data.decode(errors="replace").partition("\n")
         raise Crashed(error, trace)
+
+    def _read(self, module: ModuleType, length: int, argument: int, data: bytes) -> tuple[int, bytes]:
+        at, count = _PIECE.unpack_from(data)
+        return 0, self._processor.board.flash.read(data[_PIECE.size :].decode())[at : at + count]
 
     def _lively(self, value: Any) -> Any:
         """Return what JSON carried as the firmware meant it."""
@@ -141,13 +154,16 @@ class Desk:
             return {"bytes": value.hex()}
         if value is None or isinstance(value, bool | int | float | str | list | tuple):
             return value
-        for number, known in enumerate(self._objects):
-            if known is value:
-                return {"object": number}
-        if len(self._objects) == _OBJECTS_MAX:
-            raise RuntimeError(f"more than {_OBJECTS_MAX} objects of the bench in one life")
-        self._objects.append(value)
-        return {"object": len(self._objects) - 1}
+        number = next((n for n, known in enumerate(self._objects) if known is value), None)
+        return {"object": self._numbered(value) if number is None else number}
+
+    def _numbered(self, value: Any) -> int:
+        """Give an object a number that is free."""
+        free = next((number for number, known in enumerate(self._objects) if known is None), len(self._objects))
+        if free == _OBJECTS_MAX:
+            raise RuntimeError(f"more than {_OBJECTS_MAX} objects of the bench at a time")
+        self._objects[free : free + 1] = [value]
+        return free
 
 
 def _constants(kind: type) -> dict[str, int]:

@@ -13,8 +13,8 @@ import sys
 from array import array
 from binascii import hexlify, unhexlify
 
-PIN_SET, PIN_GET, I2C_WRITE, I2C_READ, UART_READ, UART_WRITE, ADC, FEED, SLEEP, TIME, CALL, CRASH = range(12)
-DONE, OS_ERROR, OTHER_ERROR = 0, 1, 2
+PIN_SET, PIN_GET, I2C_WRITE, I2C_READ, UART_READ, UART_WRITE, ADC, FEED, SLEEP, TIME, CALL, CRASH, READ = range(13)
+OS_ERROR, INTERRUPTED = 1, 3  # how a request may end, besides well (0) and with another error (2), told in words
 MACHINE, FILES, DESK = 0, 1, 2  # objects that are there from the start; the desk is the bench's end of this line
 HEAD = 8
 _FILLED = {"readinto": 0, "readfrom_into": 1, "readfrom_mem_into": 2, "write_readinto": 1}  # which argument is filled
@@ -104,6 +104,8 @@ class Line:
     def _fail(self, status: int, value: int) -> None:
         if status == OS_ERROR:
             raise self._errors.get(value) or OSError(value)
+        if status == INTERRUPTED:
+            raise KeyboardInterrupt
         kind, text = json.loads(self.read(value))
         raise _TEXTS.get(kind, RuntimeError)(text)
 

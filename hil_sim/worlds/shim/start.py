@@ -10,7 +10,45 @@ import time  # noqa: F401
 
 import machine  # noqa: F401  (found here, before the flash takes the place of this folder)
 import vfs
-from bench import CRASH, DESK, FILES, line
+from bench import CRASH, DESK, FILES, READ, line
+
+
+class Bytes(io.IOBase):
+    """A file that is read piece by piece, as from flash: an import need not hold its source in memory."""
+
+    def __init__(self, name) -> None:
+        self._name = name.encode()
+        self._at = 0
+        self._size = line.call(DESK, "size", (name,))
+
+    def readinto(self, buffer) -> int:
+        """Fill the front of a buffer and return how much."""
+        count = min(len(buffer), self._size - self._at)
+        if count:
+            line.ask(READ, 0, 0, self._at.to_bytes(4, "little") + count.to_bytes(4, "little") + self._name)
+            line.take(memoryview(buffer)[:count])
+            self._at += count
+        return count
+
+    def read(self, count=-1) -> bytes:
+        """Return that many bytes, or all that are left."""
+        left = self._size - self._at
+        buffer = bytearray(left if count < 0 else min(count, left))
+        self.readinto(buffer)
+        return bytes(buffer)
+
+    def ioctl(self, request, argument) -> int:
+        """Close, the one thing that is asked."""
+        return 0
+
+    def close(self) -> None:
+        """Nothing is to be given back."""
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *raised) -> None:
+        pass
 
 
 class Flash:
@@ -47,11 +85,10 @@ class Flash:
     def open(self, path, mode):
         """Return a file of the flash."""
         name = path.strip("/")
-        if "w" in mode:
+        if mode not in ("r", "rt", "rb"):
             self._files.add(name)
             return line.call(FILES, "open", (name, mode))
-        data = line.call(DESK, "read", (name,))
-        return io.BytesIO(data) if "b" in mode else io.StringIO(data.decode())
+        return Bytes(name) if mode == "rb" else io.StringIO(Bytes(name).read().decode())
 
 
 def say(*values, sep=" ", end="\n", file=None) -> None:
