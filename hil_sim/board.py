@@ -14,19 +14,26 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from hil_sim.clock import Clock
+from hil_sim.devices.canwire import CanWire
 from hil_sim.devices.flash import Flash
-from hil_sim.devices.gpio import Gpio
+from hil_sim.devices.gpio import OUT, Gpio
 from hil_sim.devices.i2c import Bus
 from hil_sim.devices.ina226 import Ina226, Source
 from hil_sim.devices.lsm6ds3tr import Lsm6ds3tr, Motion
+from hil_sim.devices.mcp2515 import Mcp2515
 from hil_sim.devices.monostable import Monostable
 from hil_sim.devices.ntc import Ntc
 from hil_sim.devices.pca9685 import Gate, Pca9685
+from hil_sim.devices.pwm import PwmSlices
+from hil_sim.devices.servo import Servo
+from hil_sim.devices.spi import SpiBus
 from hil_sim.devices.uart import Uart
 from hil_sim.journal import ADC, FAULT, RESET, UART_HEARD, Journal
 
 PWR_EN, HEARTBEAT, ESTOP_SENSE, ALERT = 2, 3, 6, 7
 SDA, SCL = 4, 5
+SERVOS = (8, 9, 10)
+MISO, CAN_SELECT, SCK, MOSI, CAN_INTERRUPT = range(16, 21)
 THERMISTOR_CHANNEL = 0
 HEARTBEAT_WINDOW_US = 50_000
 PWM_CHIPS = (0x60, 0x61)
@@ -62,6 +69,7 @@ class Board:
         baud: int = 115_200,
         identity: str = "softrig",
         motion: Motion | None = None,
+        can_wire: CanWire | None = None,
     ) -> None:
         self.clock = clock
         self.journal = journal
@@ -79,10 +87,18 @@ class Board:
         self.uart = Uart(baud)
         self.monostable = Monostable(clock, HEARTBEAT_WINDOW_US, self._on_enable)
         self.gpio = Gpio(clock, journal)
+        self.can = Mcp2515(clock, can_wire or CanWire(clock))
+        self.spi = SpiBus({CAN_SELECT: self.can}, lambda pin: self.gpio.mode(pin) == OUT and not self.gpio.driven(pin))
+        self.pulses = PwmSlices(clock, journal)
+        self.servos = {pin: Servo() for pin in SERVOS}
         self.gpio.watchers[PWR_EN] = lambda _: self._on_change()
         self.gpio.watchers[HEARTBEAT] = lambda _: self._on_beat()
         self.gpio.sources[ESTOP_SENSE] = lambda: 1 if self.estop_closed else None
         self.gpio.sources[ALERT] = self.monitor.alert_level
+        self.gpio.watchers[CAN_SELECT] = lambda _: self.spi.look()
+        self.gpio.sources[CAN_INTERRUPT] = self.can.int_level
+        for pin, servo in self.servos.items():
+            self.pulses.watch(pin, servo.pulsed)
         self._outputs = [(self.pwm[chip], output) for chip, output in outputs]
 
     def gates(self) -> list[Gate]:
@@ -125,6 +141,7 @@ class Board:
         """Reset the pins and the processor's own peripherals; the chips keep their state."""
         self.journal.note(self.clock.now_us, RESET, cause, b"")
         self.gpio.reset()
+        self.pulses.reset()
         self.uart.close(self.clock.now_us)
 
     def power_cycle(self) -> None:
@@ -132,6 +149,7 @@ class Board:
         for chip in self.pwm.values():
             chip.reset()
         self.monitor.reset()
+        self.can.reset()
         if self.imu is not None:
             self.imu.reset()
 

@@ -11,8 +11,8 @@ and so does each outside input (bytes from the host, faults). Kept entries can b
 import hashlib
 import marshal
 
-PIN, I2C_WRITE, I2C_READ, ADC, UART_SENT, UART_HEARD, FAULT, RESET, FLASH = range(9)
-KINDS = ("pin", "i2c write", "i2c read", "adc", "uart sent", "uart heard", "fault", "reset", "flash")
+PIN, I2C_WRITE, I2C_READ, ADC, UART_SENT, UART_HEARD, FAULT, RESET, FLASH, SPI, PWM = range(11)
+KINDS = ("pin", "i2c write", "i2c read", "adc", "uart sent", "uart heard", "fault", "reset", "flash", "spi", "pwm")
 
 Entry = tuple[int, int, int, bytes]
 _BATCH = 4096

@@ -29,6 +29,9 @@ FLOATING = 0x00
 class Mcp2515:
     """One chip on `wire`, its crystal of `crystal_hz`; `interrupted` is called when the level of INT has changed."""
 
+    rate_max_hz: int = 10_000_000
+    modes: tuple[int, ...] = (0, 3)
+
     def __init__(
         self, clock: Clock, wire: CanWire, crystal_hz: int = 8_000_000, interrupted: Callable[[], None] = lambda: None
     ) -> None:

@@ -11,6 +11,8 @@ from hil_sim.worlds.costs import TICKS_PERIOD, TICKS_US, WATCHDOG_MAX_MS, WATCHD
 from hil_sim.worlds.lines import I2C, UART
 from hil_sim.worlds.pins import ADC, Pin
 from hil_sim.worlds.processor import Processor
+from hil_sim.worlds.pulses import PWM
+from hil_sim.worlds.spi import SPI
 
 PWRON_RESET, WDT_RESET = 1, 3
 
@@ -18,8 +20,8 @@ PWRON_RESET, WDT_RESET = 1, 3
 def machine_module(processor: Processor) -> ModuleType:
     """Return `machine` for one life of a processor."""
     module = ModuleType("machine")
-    for peripheral in (Pin, I2C, ADC, UART, WDT):
-        owned = {"_processor": processor, "_pins": {}}
+    for peripheral in (Pin, I2C, SPI, PWM, ADC, UART, WDT):
+        owned = {"_processor": processor, "_pins": {}, "_duties": {}, "_timed": set()}
         setattr(module, peripheral.__name__, type(peripheral.__name__, (peripheral,), owned))
     vars(module).update(
         PWRON_RESET=PWRON_RESET,

@@ -31,6 +31,8 @@ class Pin:
     def init(self, mode: int = -1, pull: int | None = -1, *, value: int | None = None) -> None:
         """Configure the pin."""
         self._processor.spend(PIN_US)
+        if mode != -1:
+            self._processor.board.pulses.release(self.number)
         self._processor.board.gpio.configure(
             self.number,
             None if mode == -1 else mode,
