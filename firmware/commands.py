@@ -22,7 +22,7 @@ class Commands:
             (messages.FIRE, self._fire), (messages.STATUS_REQUEST, self._status),
             (messages.SUBSCRIBE, self._subscribe), (messages.PROGRAM, self._program), (messages.CODE, self._piece),
             (messages.START, self._start), (messages.CANCEL, self._cancel),
-        )  # fmt: skip
+        ) + core.records.orders()  # fmt: skip
 
     def serve(self, received) -> None:
         """Serve one received frame."""
@@ -33,7 +33,7 @@ class Commands:
             self._refuse(received.seq, refused)
             return
         if not answered:
-            self._answer(messages.OK, request=received.seq)
+            self.answer(messages.OK, request=received.seq)
 
     def go_on(self) -> None:
         """Verify some more of a program that waits to be started, and start it when all is well."""
@@ -50,7 +50,7 @@ class Commands:
             self._refuse(request, refused)
         else:
             self._core.start(self.upload.code)
-            self._answer(messages.OK, request=request)
+            self.answer(messages.OK, request=request)
         self.upload.request = -1
 
     def _understood(self, received) -> tuple:
@@ -91,7 +91,7 @@ class Commands:
 
     def _status(self, order, seq: int) -> bool:
         core = self._core
-        self._answer(
+        self.answer(
             messages.STATUS, request=seq, state=core.state, code=core.code, uptime_ms=core.now_ms & 0xFFFFFFFF,
             lease_ms=core.lease_left_ms(), step=core.player.step, coils=core.channels.on_mask,
             supply_mv=core.sense.supply_mv, current_ma=core.sense.current_ma,
@@ -134,12 +134,12 @@ class Commands:
             raise Refused(codes.BUSY)
 
     def _refuse(self, request: int, refused: Refused) -> None:
-        self._answer(
+        self.answer(
             messages.REFUSED, request=request, code=refused.code, channel=refused.channel,
             value=min(refused.value, FIGURE_MAX), limit=min(refused.limit, FIGURE_MAX),
         )  # fmt: skip
 
-    def _answer(self, message, **fields) -> None:
+    def answer(self, message, **fields) -> None:
         """Send an answer; a host that acknowledges nothing goes without."""
         link = self._core.link
         if link.room():

@@ -12,6 +12,7 @@ from firmware.commands import Commands
 from firmware.greetings import Greetings
 from firmware.guard import Guard
 from firmware.player import FINISHED, GUARDED, LOST, TIMED_OUT, Player
+from firmware.records import Records
 from firmware.reports import Reports
 from firmware.sense import Sense
 from protocol import codes, messages
@@ -31,7 +32,7 @@ class Core:
         self.profile = profile
         self.boot = boot
         self.dictionary = messages.dictionary(profile.text)
-        self.state = messages.BOOT
+        self.state = self.was = messages.BOOT  # now, and when this step began
         self.version = VERSION
         self.code = 0  # of the last fault
         self.overruns = 0
@@ -39,6 +40,7 @@ class Core:
         self.lease_ms = 0  # of the session that armed
         self.now_ms = 0
         self._after_reset = after_reset
+        self.records = Records(self, messages.RESET if after_reset else messages.POWER_ON)
         self._loud = loud  # a PWM chip that boot.py could not switch off
         chips = _chips(board, profile)
         self.monitor = board.monitor(profile.supply.shunt_mohm)
@@ -59,6 +61,8 @@ class Core:
     def step(self, now_ms: int, data: bytes, room: int) -> bytes:
         """Take the bytes that arrived, run one control step, and return the bytes to send: at most `room`."""
         self.now_ms = now_ms
+        self.was = self.state
+        self.records.keep()
         if self.state == messages.BOOT:
             self._begin()
         if data:
@@ -150,6 +154,10 @@ class Core:
         self.link.reset(self.link.decoder.seed)
         self.reports.period_ms = 0
 
+    def at_rest(self) -> bool:
+        """Return whether no coil is on and none can be: the time to write to the flash."""
+        return self.state in (messages.IDLE, messages.TRIPPED) and self.channels.on_mask == 0
+
     def may_restart(self) -> bool:
         """Return whether the clock should begin anew: it would outgrow small integers, and nobody is at work."""
         return self.now_ms > UPTIME_MAX_MS and self.state == messages.IDLE
@@ -164,6 +172,7 @@ class Core:
         self.state = messages.IDLE
         if self._after_reset:
             self.sense.assume_hot()
+        self.records.begin()
         try:
             self._begin_chips()
             self.sense.begin_supply()

@@ -16,8 +16,10 @@ class Reports:
         self._records = bytearray(4 * core.channels.count)
 
     def event(self, event: int, code: int = 0, channel: int = 255, value: int = 0) -> None:
-        """Tell the host what happened, unless it has stopped listening."""
+        """Tell the host what happened, unless it has stopped listening; what has a code is kept as well."""
         core = self._core
+        if code:
+            core.records.note(self._now(), code, channel, value, core.was)
         if core.link.room() > ROOM:
             payload = messages.EVENT.pack(
                 event=event, code=code, step=core.player.step, channel=channel, value=value, now_ms=self._now()

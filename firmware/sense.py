@@ -26,6 +26,7 @@ class Sense:
         self._martensite_permille = array("i", [1000] * count)
         self._rest_nj = array("i", [0] * count)
         self._seen_ms = array("i", [0] * count)
+        self.board_offset_decidegc = 0  # added to what the thermistor reads
         self._board = board
         self._monitor = monitor
         self._coil = profile.coil
@@ -89,7 +90,7 @@ class Sense:
             self.fullest = channel
 
     def _read_board(self) -> None:
-        self.board_decidegc = self._board.board_decidegc()
+        self.board_decidegc = self._board.board_decidegc() + self.board_offset_decidegc
         if BOARD_MIN_DECIDEGC <= self.board_decidegc <= BOARD_MAX_DECIDEGC:
             self._ambient_decidegc = self.board_decidegc
 

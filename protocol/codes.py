@@ -11,11 +11,12 @@ Code = namedtuple("Code", ("number", "name", "unit", "cause", "did", "todo"))
 NOT_ARMED, TRIPPED, UNKNOWN_CHANNEL, DUTY_LIMIT, HOLD_LIMIT, LEASE_HELD = 1, 2, 3, 4, 5, 6
 AT_ONCE_LIMIT, RESTING, BAD_PAYLOAD, UNKNOWN_MESSAGE, BAD_HEADER, OTHER_ROBOT = 7, 8, 9, 10, 11, 12
 TOO_LARGE, BAD_CODE, BUSY, NO_PROGRAM, LEASE_LIMIT, CAUSE_REMAINS = 13, 14, 15, 16, 17, 18
-OTHER_VERSION, NO_ATTITUDE = 19, 20
+OTHER_VERSION, NO_ATTITUDE, SETTING_LIMIT, NOT_WHILE_ARMED, FLASH_FAILED = 19, 20, 21, 22, 23
 STOP, ESTOP, LEASE_EXPIRED, HEAT_BUDGET, OVER_TEMPERATURE, OVER_CURRENT = 101, 102, 103, 104, 105, 106
 SUPPLY_LOW, CHIP, SENSOR, GUARD, WAIT_TIMEOUT, WATCHDOG = 107, 108, 109, 110, 111, 112
 STRAY_CURRENT, ON_TOO_LONG, REFUSED_STEP, SUPPLY_HIGH = 113, 114, 115, 116
 ATTITUDE = 117
+SETTINGS = 123
 
 NOTHING = "Nothing changed."
 ALL_OFF = "All coils off, latched until clear."
@@ -142,6 +143,24 @@ CODES = (
         "Run it on a robot with an attitude sensor; `softrig status` shows whether it works.",
     ),
     Code(
+        SETTING_LIMIT, "R21", "",
+        "There is no such setting, or its value is outside its range.",
+        NOTHING,
+        "`softrig settings` lists them with their ranges.",
+    ),
+    Code(
+        NOT_WHILE_ARMED, "R22", "",
+        "The robot keeps records only while every coil is off and its supply is open.",
+        NOTHING,
+        "Disarm first.",
+    ),
+    Code(
+        FLASH_FAILED, "R23", "",
+        "The flash did not take the record.",
+        "The record before it stands.",
+        "Try again; replace the board if it persists.",
+    ),
+    Code(
         STOP, "F01", "",
         "A stop was received.",
         ALL_OFF,
@@ -242,6 +261,12 @@ CODES = (
         "The attitude sensor does not answer, is another chip, or its readings do not change.",
         "All coils off, latched, if the program asks where down is; else only told.",
         "Check the sensor and its bus, then `softrig clear`.",
+    ),
+    Code(
+        SETTINGS, "F23", "",
+        "The settings that were stored are damaged or of another version.",
+        "The defaults are used; only told.",
+        "Set them again with `softrig settings`, and `softrig calibrate`.",
     ),
 )  # fmt: skip
 

@@ -20,7 +20,7 @@ FRAME_MAX = frames.BODY_MAX + 2  # on the wire, stuffed and delimited
 TRIES_MAX = 12
 RTO_FIRST_MS = 250
 RTO_MIN_MS = 100  # a full window of long frames takes that long at 115200 baud
-RTO_MAX_MS = 1000
+RTO_MAX_MS = 400  # so that a line that loses half of all exchanges is not taken for a dead one
 
 Received = namedtuple("Received", ("kind", "seq", "payload"))
 

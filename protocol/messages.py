@@ -25,10 +25,21 @@ _OutOfRange = getattr(struct, "error", ValueError)  # MicroPython has no struct.
 STATES = ("boot", "idle", "armed", "running", "tripped")
 BOOT, IDLE, ARMED, RUNNING, TRIPPED = 0, 1, 2, 3, 4
 
-EVENTS = ("", "started", "step", "finished", "aborted", "tripped", "disarmed", "cleared", "cut-off", "lost")
-STARTED, STEP, FINISHED, ABORTED, TRIP, DISARMED, CLEARED, CUT_OFF, LOST = 1, 2, 3, 4, 5, 6, 7, 8, 9
+EVENTS = ("", "started", "step", "finished", "aborted", "tripped", "disarmed", "cleared", "cut-off", "lost", "defaults")
+STARTED, STEP, FINISHED, ABORTED, TRIP, DISARMED, CLEARED, CUT_OFF, LOST, DEFAULTED = 1, 2, 3, 4, 5, 6, 7, 8, 9, 10
 
 VIEWER, HOLDER = 0, 1
+
+CAUSES = ("", "power-on", "", "reset")  # of a start of the firmware
+POWER_ON, RESET = 1, 3
+
+FAULT = "<IIHBiBB"  # start, now_ms, code, channel, value, state, cause of the start
+FAULT_BYTES = struct.calcsize(FAULT)
+
+SETTING_NAMES = ("node", "board_offset_decidegc", "resistance_mohm")
+NODE, BOARD_OFFSET, RESISTANCE = 0, 1, 2
+SETTING_SOURCES = ("defaults", "stored", "damaged")
+DEFAULTS, STORED, DAMAGED = 0, 1, 2
 
 
 class Field:
@@ -151,6 +162,18 @@ SUBSCRIBE = Message(
     0x16, "subscribe", "Sets how often the robot sends `telemetry`.",
     Field("period_ms", "H", "Between two records; 0 ends it."),
 )  # fmt: skip
+FAULTS_REQUEST = Message(
+    0x17, "faults_request", "Asks for `faults`.",
+    Field("skip", "B", "How many of the newest are not wanted."),
+)  # fmt: skip
+CLEAR_FAULTS = Message(0x1B, "clear_faults", "Forgets the faults that were kept; refused while the robot is armed.")
+SETTINGS_REQUEST = Message(0x19, "settings_request", "Asks for `settings`.")
+SET = Message(
+    0x1A, "set", "Changes a setting and keeps it; refused while the robot is armed.",
+    Field("setting", "B", "Which, see SETTINGS."),
+    Field("channel", "B", "The channel that it belongs to; 255: none."),
+    Field("value", "i", "Its value, in the unit that ends its name."),
+)  # fmt: skip
 PROGRAM = Message(
     0x20, "program", "Begins the upload of a program.",
     Field("header", "s", "The program's header, see program.py."),
@@ -193,6 +216,24 @@ STATUS = Message(
     Field("dropped", "H", "Damaged frames since boot, modulo 65536."),
     Field("overruns", "H", "Control steps that came late, modulo 65536."),
 )  # fmt: skip
+FAULTS = Message(
+    0x43, "faults", "Answers `faults_request`: a page of the faults that were kept over resets and power cuts.",
+    Field("request", "B", "Sequence number of the request."),
+    Field("start", "I", "Number of this start of the firmware in the records."),
+    Field("count", "B", "How many faults there are."),
+    Field(
+        "records", "s", "Newest first: start u32, now_ms u32, code u16, channel u8 [255: none], value i32, state u8, "
+        "cause of that start u8 [1: power-on, 3: reset].",
+    ),
+)  # fmt: skip
+SETTINGS = Message(
+    0x44, "settings", "Answers `settings_request`.",
+    Field("request", "B", "Sequence number of the request."),
+    Field("source", "B", "0: the defaults, nothing is stored; 1: stored; 2: the defaults, what was stored is damaged."),
+    Field("node", "B", "Setting 0: the robot's number on a shared bus."),
+    Field("board_offset_decidegc", "h", "Setting 1: added to what the board's thermometer reads."),
+    Field("resistances", "s", "Setting 2: per channel the cold coil's resistance u16 [mohm], 0: as in the profile."),
+)  # fmt: skip
 TELEMETRY = Message(
     0x50, "telemetry", "State of the robot, sent at the subscribed period and not repeated when lost.",
     Field("now_ms", "I", "The robot's clock."),
@@ -218,8 +259,9 @@ EVENT = Message(
 
 MESSAGES = (
     HELLO, IDENTITY, DICTIONARY, DICTIONARY_PAGE, STOPPED, NAK,
-    ALIVE, ARM, DISARM, CLEAR, FIRE, STATUS_REQUEST, SUBSCRIBE, PROGRAM, CODE, START, CANCEL,
-    OK, REFUSED, STATUS, TELEMETRY, EVENT,
+    ALIVE, ARM, DISARM, CLEAR, FIRE, STATUS_REQUEST, SUBSCRIBE,
+    FAULTS_REQUEST, CLEAR_FAULTS, SETTINGS_REQUEST, SET, PROGRAM, CODE, START, CANCEL,
+    OK, REFUSED, STATUS, FAULTS, SETTINGS, TELEMETRY, EVENT,
 )  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 For tests of one firmware module in CPython. Whole-robot tests use the bench (`rig` in conftest.py) instead.
 """
 
+import io
 from array import array
 from pathlib import Path
 
@@ -111,6 +112,35 @@ class Imu:
             raise OSError(5, "EIO")
 
 
+class Flash:
+    """Files that are written whole, or not at all."""
+
+    def __init__(self) -> None:
+        self.files: dict[str, bytes] = {}
+        self.broken = False
+
+    def open(self, path: str, mode: str):
+        if mode == "wb":
+            return Written(self, path)
+        if path not in self.files:
+            raise OSError(2, "ENOENT")
+        return io.BytesIO(self.files[path])
+
+
+class Written(io.BytesIO):
+    """A file that is open for writing."""
+
+    def __init__(self, flash: Flash, path: str) -> None:
+        super().__init__()
+        if flash.broken:
+            raise OSError(5, "EIO")
+        self._flash, self._path = flash, path
+
+    def close(self) -> None:
+        self._flash.files[self._path] = self.getvalue()
+        super().close()
+
+
 class Table:
     """The board of the core under test."""
 
@@ -122,6 +152,10 @@ class Table:
         self.beats = 0
         self.closed = True
         self.decidegc = 250
+        self.flash = Flash()
+
+    def open(self, path: str, mode: str):
+        return self.flash.open(path, mode)
 
     def pwm(self, address: int) -> Chip:
         return self.chip

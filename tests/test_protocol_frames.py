@@ -31,6 +31,20 @@ VECTORS = [
         {"event": 3, "code": 0, "step": 2, "channel": 255, "value": 0, "now_ms": 1_000_000},
         "061151ff010301020202ff0101010440420f05332bd62700",
     ),
+    ("faults_request", 1, 0x17, 2, 1, {"skip": 8}, "0a1117020108fb8d7a3e00"),
+    ("clear_faults", 1, 0x1B, 3, 1, {}, "09111b0301ec98910b00"),
+    ("settings_request", 1, 0x19, 4, 1, {}, "091119040145da544700"),
+    ("set", 1, 0x1A, 5, 2, {"setting": 2, "channel": 3, "value": 9400}, "09111a05020203b8240105602b8d3500"),
+    (
+        "faults", 1, 0x43, 6, 3,
+        {"request": 2, "start": 5, "count": 1, "records": bytes.fromhex("0400000039650c00690003b30400000301")},
+        "07114306030205010103010401010439650c02690403b30401070301300e6abd00",
+    ),
+    (
+        "settings", 1, 0x44, 7, 5,
+        {"request": 4, "source": 1, "node": 9, "board_offset_decidegc": -15, "resistances": b"\x00\x00\xb8\x24"},
+        "0a11440705040109f1ff0107b824cb8ba01200",
+    ),
 ]  # fmt: skip
 
 
