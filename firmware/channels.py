@@ -2,11 +2,16 @@
 
 Whatever is asked, no coil is on above its duty limit, longer than its order, beyond its cut-off, or without a rest
 after `on_max_ms`. Orders are checked whole before any of it is taken. Outputs are written only when they change.
+`alone` puts the orders aside for a measurement; the next `write` brings them back.
 """
 
 from array import array
 
 from protocol import codes
+
+FULL_PERMILLE = 1000
+UNKNOWN = 0xFFFF  # no duty: what the chip holds must be written anew
+NONE = -1
 
 
 class Refused(Exception):
@@ -21,14 +26,16 @@ class Refused(Exception):
 
 
 class Channels:
-    """The coils of one robot, driven through `outputs`, a list of (chip driver, output number)."""
+    """The coils of one robot, driven through `outputs`, a list of (chip driver, output number) on these chips."""
 
-    def __init__(self, outputs: list, coil, at_once_max: int) -> None:
+    def __init__(self, chips: list, outputs: list, coil, at_once_max: int) -> None:
         count = len(outputs)
         self.count = count
         self.on_mask = 0
         self.duty_permille = array("H", [0] * count)
         self.cut_off_mask = 0  # coils whose cut-off ended their order since the reports last told them
+        self.without_mask = 0  # coils known to be broken: orders pass them over
+        self._chips = chips
         self._outputs = outputs
         self._coil = coil
         self._at_once_max = at_once_max
@@ -43,8 +50,9 @@ class Channels:
 
     def fire(self, mask: int, duty_permille: int, hold_ms: int, now_ms: int, cutoff_decidegc: int = 0,
              ramp_ms: int = 0) -> None:  # fmt: skip
-        """Drive these coils until now_ms + hold_ms, or raise Refused."""
+        """Drive these coils until now_ms + hold_ms, or raise Refused; those known to be broken are passed over."""
         self._check(mask, duty_permille, hold_ms, now_ms)
+        mask &= ~self.without_mask
         for channel in range(self.count):
             if mask >> channel & 1:
                 self._order(channel, duty_permille, now_ms)
@@ -90,10 +98,35 @@ class Channels:
                 chip.set(output, duty)
                 self._written[channel] = duty
 
+    def alone(self, channel: int) -> None:
+        """Switch every output off and that of one coil, or NONE, full on, whatever was ordered."""
+        for other in range(self.count):
+            if self._written[other]:
+                self._written[other] = UNKNOWN  # until the chips have answered
+        self.shut()
+        if channel != NONE:
+            self._written[channel] = UNKNOWN
+            chip, output = self._outputs[channel]
+            chip.set(output, FULL_PERMILLE)
+            self._written[channel] = FULL_PERMILLE
+
+    def shut(self) -> None:
+        """Switch every output off, whatever was ordered; OSError when a chip does not answer."""
+        for chip in self._chips:
+            chip.all_off()
+        self.forget_written()
+
     def forget_written(self) -> None:
         """Take all outputs as off: the chips were reset or switched off behind our back."""
         for channel in range(self.count):
             self._written[channel] = 0
+
+    def is_alone_on(self, channel: int) -> bool:
+        """Return whether that coil is on at full duty, and no other is on, as far as the chips were told."""
+        for other in range(self.count):
+            if self._written[other] != (FULL_PERMILLE if other == channel else 0):
+                return False
+        return True
 
     def busy(self, now_ms: int) -> bool:
         """Return whether a coil has an order that goes on beyond now."""
@@ -119,7 +152,7 @@ class Channels:
             raise Refused(codes.HOLD_LIMIT, _first(mask), hold_ms, self._coil.hold_max_ms)
         if duty_permille == 0:
             return
-        at_once = _bits(mask | self._busy_mask(now_ms))
+        at_once = bits(mask & ~self.without_mask | self._busy_mask(now_ms))
         if at_once > self._at_once_max:
             raise Refused(codes.AT_ONCE_LIMIT, _first(mask), at_once, self._at_once_max)
         for channel in range(self.count):
@@ -153,7 +186,8 @@ class Channels:
         return self._target[channel] * passed_ms // ramp_ms
 
 
-def _bits(mask: int) -> int:
+def bits(mask: int) -> int:
+    """Return how many bits are set."""
     count = 0
     while mask:
         mask &= mask - 1

@@ -17,11 +17,13 @@ class Commands:
     def __init__(self, core) -> None:
         self.upload = Upload(core.profile)
         self._core = core
+        self._arming = -1  # number of the arming that waits for its self-test, -1: none
+        self._lease_ms = 0  # that it asked for
         self._orders = (
             (messages.ARM, self._arm), (messages.DISARM, self._disarm), (messages.CLEAR, self._clear),
             (messages.FIRE, self._fire), (messages.STATUS_REQUEST, self._status),
             (messages.SUBSCRIBE, self._subscribe), (messages.PROGRAM, self._program), (messages.CODE, self._piece),
-            (messages.START, self._start), (messages.CANCEL, self._cancel),
+            (messages.START, self._start), (messages.CANCEL, self._cancel), (messages.COILS_REQUEST, self._coils),
         ) + core.records.orders()  # fmt: skip
 
     def serve(self, received) -> None:
@@ -36,6 +38,36 @@ class Commands:
             self.answer(messages.OK, request=received.seq)
 
     def go_on(self) -> None:
+        """Answer an arming whose self-test is done, go on verifying a program that waits to be started."""
+        if self._arming >= 0 and self._core.control.selftest.done:
+            self._tested()
+        self._verify()
+
+    def give_up(self, code: int) -> None:
+        """Refuse an arming that waits for its self-test."""
+        if self._arming >= 0:
+            self._refuse(self._arming, Refused(code))
+            self._arming = -1
+
+    def forget(self) -> None:
+        """Drop what waits for an answer, because nobody is left to be answered."""
+        if self._arming >= 0:
+            self._core.control.all_off(self._core.now_ms)
+        self._arming = self.upload.request = -1
+
+    def _tested(self) -> None:
+        """Arm after a self-test in which every coil was whole, else refuse with its code."""
+        core, test = self._core, self._core.control.selftest
+        request, self._arming = self._arming, -1
+        test.done = False
+        if test.code:
+            core.control.all_off(core.now_ms)
+            self._refuse(request, Refused(test.code, test.channel, test.value, test.limit))
+        else:
+            core.arm(self._lease_ms)
+            self.answer(messages.OK, request=request)
+
+    def _verify(self) -> None:
         """Verify some more of a program that waits to be started, and start it when all is well."""
         request = self.upload.request
         if request < 0:
@@ -62,16 +94,26 @@ class Commands:
                     raise Refused(codes.BAD_PAYLOAD, 255, len(received.payload)) from None
         raise Refused(codes.UNKNOWN_MESSAGE, 255, received.kind)
 
-    def _arm(self, order, seq: int) -> None:
+    def _arm(self, order, seq: int) -> bool:
+        """Begin the self-test, whose end answers; a robot that is armed, and without the same coils, just goes on."""
         core = self._core
         lease_ms = order.lease_ms or core.profile.lease_ms
         if order.session != core.session:
             raise Refused(codes.LEASE_HELD)
         if lease_ms > core.profile.lease_max_ms:
             raise Refused(codes.LEASE_LIMIT, 255, lease_ms, core.profile.lease_max_ms)
+        if order.without >> core.channels.count:
+            raise Refused(codes.UNKNOWN_CHANNEL, 255, order.without, (1 << core.channels.count) - 1)
         self._not_running()
         self._not_tripped()
-        core.arm(lease_ms)
+        if core.state == messages.ARMED and order.without == core.channels.without_mask:
+            core.arm(lease_ms)
+            return False
+        core.disarm()
+        core.channels.without_mask = order.without
+        core.control.selftest.begin(order.without)
+        self._arming, self._lease_ms = seq, lease_ms
+        return True
 
     def _disarm(self, order, seq: int) -> None:
         self._core.disarm()
@@ -99,6 +141,10 @@ class Commands:
             pitch_decideg=core.attitude.pitch_decideg(), down=core.attitude.down_channel(),
             dropped=core.link.decoder.dropped & 0xFFFF, overruns=core.overruns & 0xFFFF,
         )  # fmt: skip
+        return True
+
+    def _coils(self, order, seq: int) -> bool:
+        self.answer(messages.COILS, request=seq, channels=self._core.reports.coils())
         return True
 
     def _program(self, order, seq: int) -> None:
@@ -130,7 +176,7 @@ class Commands:
             raise Refused(codes.TRIPPED, 255, self._core.code)
 
     def _not_running(self) -> None:
-        if self._core.state == messages.RUNNING or self.upload.request >= 0:
+        if self._core.state == messages.RUNNING or self.upload.request >= 0 or self._arming >= 0:
             raise Refused(codes.BUSY)
 
     def _refuse(self, request: int, refused: Refused) -> None:

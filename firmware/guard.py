@@ -32,19 +32,21 @@ class Guard:
         self.value = 0
         if not self._board.estop_closed():
             return codes.ESTOP
+        if self._board.alert():
+            return self.fault(codes.ALERT, sense.current_ma)
         if not BOARD_MIN_DECIDEGC <= sense.board_decidegc <= BOARD_MAX_DECIDEGC:
-            return self._fault(codes.SENSOR, sense.board_decidegc)
+            return self.fault(codes.SENSOR, sense.board_decidegc)
         if self._stray(now_ms):
-            return self._fault(codes.STRAY_CURRENT, sense.current_ma)
+            return self.fault(codes.STRAY_CURRENT, sense.current_ma)
         if sense.supply_mv > self._supply.high_mv:
-            return self._fault(codes.SUPPLY_HIGH, sense.supply_mv)
+            return self.fault(codes.SUPPLY_HIGH, sense.supply_mv)
         if not powered:
             self._low_since_ms = now_ms
             return 0
         if sense.current_ma > self._supply.current_max_ma:
-            return self._fault(codes.OVER_CURRENT, sense.current_ma)
+            return self.fault(codes.OVER_CURRENT, sense.current_ma)
         if self._low(now_ms):
-            return self._fault(codes.SUPPLY_LOW, sense.supply_mv)
+            return self.fault(codes.SUPPLY_LOW, sense.supply_mv)
         return self._heat()
 
     def _heat(self) -> int:
@@ -53,9 +55,9 @@ class Guard:
         if hottest < 0:
             return 0
         if sense.temperature_millidegc[hottest] > self._coil.trip_decidegc * 100:
-            return self._fault(codes.OVER_TEMPERATURE, sense.temperature_millidegc[hottest] // 100, hottest)
+            return self.fault(codes.OVER_TEMPERATURE, sense.temperature_millidegc[hottest] // 100, hottest)
         if sense.heat_uj[fullest] > self._coil.heat_budget_mj * 1000:
-            return self._fault(codes.HEAT_BUDGET, sense.heat_uj[fullest] // 1000, fullest)
+            return self.fault(codes.HEAT_BUDGET, sense.heat_uj[fullest] // 1000, fullest)
         return 0
 
     def _stray(self, now_ms: int) -> bool:
@@ -68,7 +70,8 @@ class Guard:
             self._low_since_ms = now_ms
         return now_ms - self._low_since_ms > SETTLE_MS
 
-    def _fault(self, code: int, value: int, channel: int = 255) -> int:
+    def fault(self, code: int, value: int, channel: int = 255) -> int:
+        """Keep what a fault is about and return its code."""
         self.value = value
         self.channel = channel
         return code

@@ -1,5 +1,7 @@
 """What the core tells its host: events, surely and once; telemetry, at the period that was asked for."""
 
+import struct
+
 from protocol import codes, messages
 
 ROOM = 8  # places of the link's queue that events leave to answers
@@ -41,6 +43,16 @@ class Reports:
         if self.period_ms and core.now_ms - self._due_ms >= 0:
             self._due_ms = core.now_ms + self.period_ms
             core.link.post(messages.TELEMETRY.number, self._telemetry(core))
+
+    def coils(self) -> bytes:
+        """Return what the resistances say, as `coils` carries it."""
+        resistance, told = self._core.control.resistance, b""
+        for channel in range(self._core.channels.count):
+            told += struct.pack(
+                "<HHhh", min(resistance.mohm[channel] // 10, 0xFFFF), resistance.martensite_permille(channel),
+                resistance.least_decidegc(channel), resistance.most_decidegc(channel),
+            )  # fmt: skip
+        return told
 
     def _cut_offs(self, core) -> None:
         for channel in range(core.channels.count):

@@ -9,6 +9,7 @@ from array import array
 
 BOARD_MIN_DECIDEGC = -200  # what a thermistor in order reads on a board in use
 BOARD_MAX_DECIDEGC = 850
+STALE_STEPS = 4  # after a sense slot: then the second conversion, of 9.8 ms, has ended
 
 
 class Sense:
@@ -17,6 +18,7 @@ class Sense:
     def __init__(self, board, monitor, count: int, profile) -> None:
         self.supply_mv = 0
         self.current_ma = 0
+        self.current_fresh = False  # whether it was read in this control step
         self.board_decidegc = 250  # as read: the guard judges it
         self._ambient_decidegc = 250  # the last reading that can be
         self.temperature_millidegc = array("i", [25_000] * count)  # cold, until power or a reset says otherwise
@@ -32,18 +34,33 @@ class Sense:
         self._coil = profile.coil
         self._count = count
         self._turn = 0
+        self._stale = 0
         self._updated_ms = 0
         self._full_uw = 0
 
     def read(self) -> None:
         """Read one sensor in its turn; OSError when the monitor does not answer."""
         self._turn = (self._turn + 1) & 63
-        if self._turn & 1:
-            self.current_ma = self._monitor.current_ma()
-        elif self._turn == 0:
+        self.current_fresh = False
+        if self._turn == 0:
             self._read_board()
+        elif self._stale:
+            self._stale -= 1
+        elif self._turn & 1:
+            self.current_ma = self._monitor.current_ma()
+            self.current_fresh = True
         elif self._turn & 2:
             self._read_supply()
+
+    def disturbed(self) -> None:
+        """Read nothing from the monitor before its averages are of the coils' mean current again."""
+        self._stale = STALE_STEPS
+
+    def pulse(self, channel: int, more_permille: int, time_us: int) -> None:
+        """Add the energy of a pulse at so much more than the duty that was ordered."""
+        energy_uj = self._full_uw // 1000 * time_us // 1000 * more_permille // 1000
+        self.heat_uj[channel] += energy_uj
+        self._rest_nj[channel] += energy_uj * 1000
 
     def assume_hot(self) -> None:
         """Take every coil as just below its trip, its budget spent: what a reset forgot may be so."""

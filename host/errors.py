@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from protocol import codes
 
+LOWER_BOUNDS = (codes.SUPPLY_LOW, codes.COIL_SHORT)  # their limit is what should have been reached
 NONE = 255  # channel number of an answer that is about no channel
 
 
@@ -109,7 +110,8 @@ def _told(code: int, value: int, limit: int = 0) -> str:
     row = codes.row(code)
     if row is None:
         return f"code {code}, unknown to this version; update softrig"
-    figures = f" {value} {row.unit}{f', at most {limit}' if limit else ''}." if row.unit else ""
+    bound = "at least" if row.number in LOWER_BOUNDS else "at most"
+    figures = f" {value} {row.unit}{f', {bound} {limit}' if limit else ''}." if row.unit else ""
     return f"{row.name} {_cause(row, value)}{figures} {row.todo}"
 
 

@@ -14,11 +14,12 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from typing import Any, Protocol
 
-from host.errors import Interrupted, LinkLost, Refused, Silent, SoftrigError
+from host.errors import NONE, Interrupted, LinkLost, Refused, Silent, SoftrigError
+from host.kept import Fault, FaultPage, Settings
 from host.link import Link
 from host.profile import Profile
 from host.records import Event, Record, Status, Stopped, Telemetry
-from host.session import Session
+from host.session import Answer, Session
 from protocol import codes, messages
 
 PATIENCE_MS = 1500  # for the lease of a host that has gone
@@ -117,10 +118,14 @@ class Robot:
             raise LinkLost("the robot answered a request for its status with something else")
         return answer
 
-    def arm(self, lease_ms: int = 0) -> None:
-        """Take the lease and allow orders; 0 takes the robot's own lease."""
+    def arm(self, lease_ms: int = 0, without: Iterable[str] = ()) -> None:
+        """Have every coil tested, take the lease and allow orders; 0 takes the robot's own lease.
+
+        The coils and groups of `without` are known to be broken: they are not tested, and never driven.
+        """
         self._within("arm", codes.LEASE_LIMIT, lease_ms, self.profile.session.lease_max_ms)
-        self._order(messages.ARM, session=self._session.number, lease_ms=lease_ms)
+        broken = self.profile.mask(without)
+        self._order(messages.ARM, session=self._session.number, lease_ms=lease_ms, without=broken)
 
     def disarm(self) -> None:
         """Switch all coils off and return the lease."""
@@ -152,6 +157,33 @@ class Robot:
         self._within("fire", codes.DUTY_LIMIT, duty_permille, limits.duty_max_permille)
         self._within("fire", codes.HOLD_LIMIT, hold_ms, limits.hold_max_ms)
         self._order(messages.FIRE, coils=mask, duty_permille=duty_permille, hold_ms=hold_ms)
+
+    def faults(self) -> list[Fault]:
+        """Return the faults that the robot has kept over resets and power cuts, newest first."""
+        faults: list[Fault] = []
+        while True:
+            page = self._order(messages.FAULTS_REQUEST, skip=len(faults))
+            if not isinstance(page, FaultPage):
+                raise LinkLost("the robot answered a request for its faults with something else")
+            faults += page.faults
+            if not page.faults or len(faults) >= page.count:
+                return faults
+
+    def clear_faults(self) -> None:
+        """Have the robot forget the faults that it has kept."""
+        self._order(messages.CLEAR_FAULTS)
+
+    def settings(self) -> Settings:
+        """Ask for the robot's settings."""
+        settings = self._order(messages.SETTINGS_REQUEST)
+        if not isinstance(settings, Settings):
+            raise LinkLost("the robot answered a request for its settings with something else")
+        return settings
+
+    def change(self, name: str, value: int, coil: str | None = None) -> None:
+        """Change a setting, one of SETTING_NAMES, and have the robot keep it."""
+        channel = NONE if coil is None else self.profile.labels.index(coil)
+        self._order(messages.SET, setting=messages.SETTING_NAMES.index(name), channel=channel, value=value)
 
     def subscribe(self, period_ms: int) -> None:
         """Have telemetry sent at that period; 0 ends it."""
@@ -218,7 +250,7 @@ class Robot:
         if value > WORD_MAX:
             raise Refused(request, code, value, limit)
 
-    def _order(self, message: messages.Message, **values: Any) -> Status | None:
+    def _order(self, message: messages.Message, **values: Any) -> Answer | None:
         """Give an order and wait for its answer; Refused when the robot refuses it."""
         return self._answer(self._ask(message, **values))
 
@@ -226,7 +258,7 @@ class Robot:
         self._wait(lambda: self._session.room() > 0)
         return self._session.request(message, self.now_ms(), **values)
 
-    def _answer(self, seq: int) -> Status | None:
+    def _answer(self, seq: int) -> Answer | None:
         answers = self._session.answers
         self._wait(lambda: seq in answers)
         answer = answers.pop(seq)

@@ -25,7 +25,7 @@ class Progress(Protocol):
     """Whoever shows how far a run has come."""
 
     def __call__(self, stage: str, done: float) -> None:
-        """Show that of `stage` ("upload", "run") this many bytes or seconds are done."""
+        """Show that of `stage` ("upload", "self-test", "run") this many bytes, coils or seconds are done."""
 
 
 class Keeper:
@@ -96,11 +96,15 @@ class Ending:
         return RobotFault(self.event.code, self.event.value, self.event.coil)
 
 
-def run(robot: Robot, code: bytes, progress: Progress) -> Ending:
-    """Run a program (header and code) on a robot that is connected; a line that breaks on the way ends it too."""
+def run(robot: Robot, code: bytes, progress: Progress, without: tuple[str, ...] = ()) -> Ending:
+    """Run a program (header and code) on a robot that is connected; a line that breaks on the way ends it too.
+
+    Coils of `without` are known to be broken: whatever the program orders, they stay cold.
+    """
     upload(robot, code, progress)
     robot.subscribe(TELEMETRY_MS)
-    robot.arm()
+    robot.arm(without=without)
+    progress("self-test", len(robot.profile.labels))
     robot.start()
     try:
         event = _watched(robot, progress)

@@ -15,7 +15,7 @@ OTHER_VERSION, NO_ATTITUDE, SETTING_LIMIT, NOT_WHILE_ARMED, FLASH_FAILED = 19, 2
 STOP, ESTOP, LEASE_EXPIRED, HEAT_BUDGET, OVER_TEMPERATURE, OVER_CURRENT = 101, 102, 103, 104, 105, 106
 SUPPLY_LOW, CHIP, SENSOR, GUARD, WAIT_TIMEOUT, WATCHDOG = 107, 108, 109, 110, 111, 112
 STRAY_CURRENT, ON_TOO_LONG, REFUSED_STEP, SUPPLY_HIGH = 113, 114, 115, 116
-ATTITUDE = 117
+ATTITUDE, COIL_OPEN, COIL_SHORT, CONTACTOR, EXCESS_CURRENT, ALERT = 117, 118, 119, 120, 121, 122
 SETTINGS = 123
 
 NOTHING = "Nothing changed."
@@ -261,6 +261,36 @@ CODES = (
         "The attitude sensor does not answer, is another chip, or its readings do not change.",
         "All coils off, latched, if the program asks where down is; else only told.",
         "Check the sensor and its bus, then `softrig clear`.",
+    ),
+    Code(
+        COIL_OPEN, "F18", "mohm",
+        "A coil's resistance is above its band: its wire or a contact is open.",
+        ALL_OFF,
+        "Mend the coil, or arm with `--without COIL`: it is passed over then.",
+    ),
+    Code(
+        COIL_SHORT, "F19", "mohm",
+        "A coil's resistance is below its band: it is shorted, or another coil is on beside it.",
+        ALL_OFF,
+        "Mend the coil or its MOSFET; `--without COIL` only passes over the coil.",
+    ),
+    Code(
+        CONTACTOR, "F20", "mA",
+        "Current flows although the coil supply is switched off: its switch is welded or bridged.",
+        ALL_OFF,
+        "Disconnect the supply by hand and replace the switch behind PWR_EN.",
+    ),
+    Code(
+        EXCESS_CURRENT, "F21", "mA",
+        "More current flows than was ordered; it goes on with every output off.",
+        "Coil supply switched off, latched.",
+        "A MOSFET is stuck: replace it.",
+    ),
+    Code(
+        ALERT, "F22", "mA",
+        "The current monitor has raised its alarm: the supply current was far above its limit.",
+        "All coils off by hardware, latched until clear.",
+        "Look for a shorted coil: `softrig clear`, then `softrig arm` names it.",
     ),
     Code(
         SETTINGS, "F23", "",

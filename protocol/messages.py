@@ -145,9 +145,10 @@ NAK = Message(
 
 ALIVE = Message(0x10, "alive", "Says only that the sender lives; carries its acknowledgement and renews the lease.")
 ARM = Message(
-    0x11, "arm", "Takes the lease and allows orders until it runs out.",
+    0x11, "arm", "Takes the lease and allows orders until it runs out, once the self-test of every coil has passed.",
     Field("session", "I", "The session that asks, as in its `hello`."),
     Field("lease_ms", "H", "All coils off when nothing arrives for this long; 0 takes the robot's own."),
+    Field("without", "I", "Bit mask of coils known to be broken: not tested, and never driven."),
 )  # fmt: skip
 DISARM = Message(0x12, "disarm", "All coils off, lease returned.")
 CLEAR = Message(0x13, "clear", "Leaves the tripped state once its cause is gone.")
@@ -174,6 +175,7 @@ SET = Message(
     Field("channel", "B", "The channel that it belongs to; 255: none."),
     Field("value", "i", "Its value, in the unit that ends its name."),
 )  # fmt: skip
+COILS_REQUEST = Message(0x18, "coils_request", "Asks for `coils`.")
 PROGRAM = Message(
     0x20, "program", "Begins the upload of a program.",
     Field("header", "s", "The program's header, see program.py."),
@@ -234,6 +236,15 @@ SETTINGS = Message(
     Field("board_offset_decidegc", "h", "Setting 1: added to what the board's thermometer reads."),
     Field("resistances", "s", "Setting 2: per channel the cold coil's resistance u16 [mohm], 0: as in the profile."),
 )  # fmt: skip
+COILS = Message(
+    0x45, "coils", "Answers `coils_request`: what the resistance of each coil, as measured last, says of it.",
+    Field("request", "B", "Sequence number of the request."),
+    Field(
+        "channels", "s",
+        "Per channel: resistance u16 [10 mohm; 65535: more], martensite u16 [permille; 65535: not known],"
+        " temperature at least i16 and at most i16 [0.1 C; -32768 and 32767: no bound].",
+    ),
+)  # fmt: skip
 TELEMETRY = Message(
     0x50, "telemetry", "State of the robot, sent at the subscribed period and not repeated when lost.",
     Field("now_ms", "I", "The robot's clock."),
@@ -260,8 +271,8 @@ EVENT = Message(
 MESSAGES = (
     HELLO, IDENTITY, DICTIONARY, DICTIONARY_PAGE, STOPPED, NAK,
     ALIVE, ARM, DISARM, CLEAR, FIRE, STATUS_REQUEST, SUBSCRIBE,
-    FAULTS_REQUEST, CLEAR_FAULTS, SETTINGS_REQUEST, SET, PROGRAM, CODE, START, CANCEL,
-    OK, REFUSED, STATUS, FAULTS, SETTINGS, TELEMETRY, EVENT,
+    FAULTS_REQUEST, CLEAR_FAULTS, SETTINGS_REQUEST, SET, COILS_REQUEST, PROGRAM, CODE, START, CANCEL,
+    OK, REFUSED, STATUS, FAULTS, SETTINGS, COILS, TELEMETRY, EVENT,
 )  # fmt: skip
 
 

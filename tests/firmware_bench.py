@@ -51,23 +51,46 @@ class Chip:
 
 
 class Monitor:
-    """A supply monitor with the readings a test sets."""
+    """A supply monitor that reads what the coils take, or what a test sets in its place."""
 
     address = 0x40
 
-    def __init__(self) -> None:
-        self.ma = 0
+    def __init__(self, table) -> None:
+        self.ma = None  # the mean current that a test wants read
         self.mv = 2000
         self.absent = False
+        self.looks = 0
+        self._table = table
+        self._seen_ma = 0
 
     def begin(self) -> None:
-        """Nothing to set."""
+        self._read(0)
+        self._table.alerting = False
 
     def configured(self) -> bool:
         return True
 
+    def average(self) -> None:
+        self._read(0)
+
+    def hasten(self) -> None:
+        self._read(0)
+
+    def look(self) -> None:
+        self.looks += 1
+        self._seen_ma = self._read(self._table.current_ma())
+
+    def seen_ma(self) -> int:
+        return self._seen_ma
+
+    def seen_mv(self) -> int:
+        return self.mv
+
+    def seen_mohm(self) -> int:
+        return self.mv * 1000 // self._seen_ma if self._seen_ma else 0x3FFFFFFF
+
     def current_ma(self) -> int:
-        return self._read(self.ma)
+        return self._read(self._table.current_ma() if self.ma is None else self.ma)
 
     def voltage_mv(self) -> int:
         return self._read(self.mv)
@@ -146,7 +169,12 @@ class Table:
 
     def __init__(self) -> None:
         self.chip = Chip()
-        self.supply = Monitor()
+        self.supply = Monitor(self)
+        self.coil_mohm = [10_000] * 16  # with its wires; 0: open
+        self.stuck_mask = 0  # coils whose MOSFET conducts whatever its gate says
+        self.welded = False
+        self.alerting = False
+        self.waited_us = 0
         self.sensor = Imu()
         self.powered = False
         self.beats = 0
@@ -160,8 +188,22 @@ class Table:
     def pwm(self, address: int) -> Chip:
         return self.chip
 
-    def monitor(self, shunt_mohm: int) -> Monitor:
+    def monitor(self, shunt_mohm: int, alert_ma: int) -> Monitor:
         return self.supply
+
+    def current_ma(self) -> int:
+        """Return the mean current of all coils."""
+        if not (self.powered or self.welded):
+            return 0
+        shares = [1000 if self.stuck_mask >> i & 1 else duty for i, duty in enumerate(self.chip.duty_permille)]
+        rows = zip(shares, self.coil_mohm, strict=True)
+        return sum(share * self.supply.mv // mohm for share, mohm in rows if mohm)
+
+    def alert(self) -> bool:
+        return self.alerting
+
+    def wait_us(self, time_us: int) -> None:
+        self.waited_us += time_us
 
     def imu(self, address: int) -> Imu:
         return self.sensor
@@ -216,9 +258,12 @@ class Rig:
         self.got += fresh
         return fresh
 
-    def arm(self, lease_ms: int = 0):
-        """Arm and return the answers."""
-        return self.say(messages.ARM, session=SESSION, lease_ms=lease_ms)
+    def arm(self, lease_ms: int = 0, without: int = 0):
+        """Arm and return the answers, up to that which follows the self-test."""
+        answers = self.say(messages.ARM, session=SESSION, lease_ms=lease_ms, without=without)
+        while self.core.control.selftest.running or self.core.control.selftest.done:
+            answers += self.run(5)
+        return answers
 
     def fire(self, coils: int, duty_permille: int = 500, hold_ms: int = 1000):
         """Fire and return the answers."""

@@ -37,10 +37,10 @@ class HilRig:
         """Return the bench's clock."""
         return self.link.now_s()
 
-    def fire(self, *coils: str, duty_percent: float, hold_s: float) -> float:
+    def fire(self, *coils: str, duty_percent: float, hold_s: float, without: tuple[str, ...] = ()) -> float:
         """Arm if need be, fire, and return the time at which the first coil was switched on."""
         if self.robot.status().state == "idle":
-            self.robot.arm()
+            self.robot.arm(without=without)
         self.robot.fire(coils, round(duty_percent * 10), round(hold_s * 1000))
         return self.coil(coils[0]).on_at_s
 

@@ -9,6 +9,8 @@ import sys
 from array import array
 from binascii import crc32, hexlify
 
+from firmware import core
+from firmware.control import Control
 from firmware.core import Core
 from firmware.profile import Profile
 from protocol import messages, program
@@ -22,32 +24,61 @@ class Chip:
     """A PWM chip that prints what it is told."""
 
     address = 0x60
+    on = [0] * 16
 
     def begin(self):
         print("begin")
 
     def set(self, output, permille):
+        self.on[output] = permille
         out("set", output, permille)
 
     def all_off(self):
-        print("all off")
+        for output in range(16):
+            self.on[output] = 0
+        out("off", 0, 0)
 
     def configured(self):
         return True
 
 
 class Monitor:
-    """A supply monitor that always reads the same."""
+    """A supply monitor: its averages are always the same, its looks see the coils that are full on."""
 
     address = 0x40
     ma = 20
     mv = 2000
+    mohm = 10_000
+
+    def __init__(self):
+        self.seen = 0
 
     def begin(self):
         print("begin")
 
     def configured(self):
         return True
+
+    def average(self):
+        out("average", 0, 0)
+
+    def hasten(self):
+        out("hasten", 0, 0)
+
+    def look(self):
+        self.seen = 0
+        for permille in Chip.on:
+            if permille == 1000 and Table.powered:
+                self.seen += self.mv * 1000 // self.mohm
+
+    def seen_ma(self):
+        return self.seen
+
+    def seen_mv(self):
+        return self.mv
+
+    def seen_mohm(self):
+        return self.mv * 1000 // self.seen if self.seen else 0x3FFFFFFF
 
     def current_ma(self):
         return self.ma
@@ -82,6 +113,8 @@ class Imu:
 class Table:
     """A board on a table top."""
 
+    powered = False
+
     def open(self, path, mode):
         raise OSError(2, "ENOENT")
 
@@ -91,10 +124,17 @@ class Table:
     def pwm(self, address):
         return Chip()
 
-    def monitor(self, shunt_mohm):
+    def monitor(self, shunt_mohm, alert_ma):
         return Monitor()
 
+    def wait_us(self, time_us):
+        out("wait", time_us, 0)
+
+    def alert(self):
+        return False
+
     def power(self, on):
+        Table.powered = on
         out("power", int(on), 0)
 
     def beat(self):
@@ -118,13 +158,13 @@ def out(what, first, second):
         told.append((what, first, second))
 
 
-class Locked(Core):
-    """A core whose control step may not allocate."""
+class Locked(Control):
+    """A control step that may not allocate."""
 
-    def control(self, now_ms):
+    def step(self, now_ms, state):
         micropython.heap_lock()
         try:
-            return super().control(now_ms)
+            return super().step(now_ms, state)
         finally:
             micropython.heap_unlock()
 
@@ -165,12 +205,13 @@ def orders(profile):
         (20, messages.DICTIONARY, {"offset": 0}),
         (30, messages.FIRE, {"coils": 1, "duty_permille": 500, "hold_ms": 100}),
         (40, messages.SUBSCRIBE, {"period_ms": 50}),
-        (50, messages.ARM, {"session": SESSION, "lease_ms": 0}),
-        (60, messages.FIRE, {"coils": 3, "duty_permille": 1001, "hold_ms": 100}),
-        (70, messages.FIRE, {"coils": 3, "duty_permille": 321, "hold_ms": 100}),
-        (200, messages.PROGRAM, {"header": program.header(code, crc)}),
-        (210, messages.CODE, {"offset": 0, "code": code}),
-        (220, messages.START, {}),
+        (50, messages.ARM, {"session": SESSION, "lease_ms": 0, "without": 0b100}),
+        (190, messages.FIRE, {"coils": 3, "duty_permille": 1001, "hold_ms": 100}),
+        (195, messages.FIRE, {"coils": 3, "duty_permille": 321, "hold_ms": 100}),
+        (260, messages.COILS_REQUEST, {}),
+        (300, messages.PROGRAM, {"header": program.header(code, crc)}),
+        (310, messages.CODE, {"offset": 0, "code": code}),
+        (320, messages.START, {}),
         (2000, messages.STATUS_REQUEST, {}),
         (2010, messages.FIRE, {"coils": 0x80, "duty_permille": 1000, "hold_ms": 9000}),
     ]
@@ -205,10 +246,12 @@ def session(core, profile):
 with open(sys.argv[1], "rb") as file:
     profile = Profile(file.read())
 Monitor.mv = profile.supply.nominal_mv
+Monitor.mohm = profile.coil.resistance_mohm + profile.coil.wiring_mohm
 if LOCKED:
     import micropython
 
-    session(Locked(Table(), profile, 1), profile)
+    core.Control = Locked
+    session(Core(Table(), profile, 1), profile)
 else:
     session(Core(Table(), profile, 1), profile)
 print("dictionary", crc32(messages.dictionary(profile.text)))

@@ -51,11 +51,12 @@ LIMITS = [
 @pytest.mark.parametrize(("what", "order", "code", "channel"), LIMITS, ids=[row[0] for row in LIMITS])
 def test_an_order_beyond_a_limit_changes_nothing_and_names_the_limit(rig, what, order, code, channel):
     rig.arm()
+    tested = rig.board.chip.writes
 
     said = refusal(rig.fire(**order))
 
     assert (said.code, said.channel) == (code, channel)
-    assert rig.board.chip.writes == 0
+    assert rig.board.chip.writes == tested
 
 
 def test_a_silent_host_loses_its_lease_and_every_coil_goes_off(rig):
@@ -162,8 +163,8 @@ def test_a_supply_that_is_too_high_is_never_let_onto_the_coils(rig):
 def test_a_supply_that_was_low_while_it_was_off_does_not_trip_the_arming(rig):
     rig.board.supply.mv = 0
     rig.run(400)
-    rig.arm()
     rig.board.supply.mv = 2000
+    rig.arm()
 
     rig.run(80)
 

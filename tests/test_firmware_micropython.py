@@ -44,7 +44,7 @@ def test_both_interpreters_send_the_same_bytes_and_set_the_same_duties(here, rob
 def test_the_trial_looks_at_orders_programs_faults_and_telemetry(here):
     kinds = {line.split()[1] for line in here if line[0].isdigit()}
 
-    assert kinds == {"set", "power", "sent"}
+    assert kinds == {"set", "off", "power", "wait", "hasten", "average", "sent"}
     assert len([line for line in here if " set " in line]) > 10
     assert len([line for line in here if " sent " in line]) > 50
 

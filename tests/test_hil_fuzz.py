@@ -119,7 +119,9 @@ class Attacker:
 
     def _armed(self) -> None:
         self._say(messages.CLEAR)
-        self._say(messages.ARM, session=self._session, lease_ms=self.random.choice((0, 1, 5000, 65_535)))
+        lease_ms, without = self.random.choice((0, 1, 5000, 65_535)), self.random.choice((0, 0, 0, 2, 1 << 31))
+        self._say(messages.ARM, session=self._session, lease_ms=lease_ms, without=without)
+        self.line.read(self.line.now_s() + self.random.choice((0.05, 0.1)))  # of the self-test, or after it
 
     def _words(self) -> None:
         self._say(messages.SUBSCRIBE, period_ms=self.random.choice((0, 1, 50)))

@@ -15,7 +15,10 @@ SEED = 0x12345678
 VECTORS = [
     ("hello", 0, 0x01, 0, 0, {"version": 1, "session": 0xDEADBEEF}, "031001010a01efbeaddef2c01d8000"),
     ("alive", 0, 0x10, 0, 5, {}, "0310100605b287389300"),
-    ("arm", 1, 0x11, 0, 0, {"session": 0xDEADBEEF, "lease_ms": 500}, "031111010befbeaddef4018d2b69f200"),
+    (
+        "arm", 1, 0x11, 0, 0, {"session": 0xDEADBEEF, "lease_ms": 500, "without": 5},
+        "0311110108efbeaddef4010501010517ab3dda00",
+    ),
     ("fire", 1, 0x14, 3, 7, {"coils": 1, "duty_permille": 600, "hold_ms": 500}, "0611140307010101095802f401354932ea00"),
     ("ok", 1, 0x40, 2, 4, {"request": 3}, "0a11400204032d97058200"),
     (

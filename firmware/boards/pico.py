@@ -26,6 +26,7 @@ class Board:
         self._power = Pin(2, Pin.OUT, value=0)
         self._heartbeat = Pin(3, Pin.OUT, value=0)
         self._estop = Pin(6, Pin.IN, Pin.PULL_DOWN)
+        self._alert = Pin(7, Pin.IN, Pin.PULL_UP)
         self._beat = 0
         self._bus = I2C(0, scl=Pin(5), sda=Pin(4), freq=400_000, timeout=1000)
         self._uart = UART(0, baudrate=BAUD, tx=Pin(0), rx=Pin(1), txbuf=BUFFER_BYTES, rxbuf=BUFFER_BYTES)
@@ -37,9 +38,9 @@ class Board:
         """Return the driver of the PWM chip at that address."""
         return Pca9685(self._bus, address)
 
-    def monitor(self, shunt_mohm: int) -> Ina226:
-        """Return the driver of the monitor of the coil supply."""
-        return Ina226(self._bus, 0x40, shunt_mohm)
+    def monitor(self, shunt_mohm: int, alert_ma: int) -> Ina226:
+        """Return the driver of the monitor of the coil supply, which pulls its alert pin at that current."""
+        return Ina226(self._bus, 0x40, shunt_mohm, alert_ma)
 
     def imu(self, address: int) -> Lsm6ds3tr:
         """Return the driver of the attitude sensor at that address."""
@@ -57,6 +58,14 @@ class Board:
     def estop_closed(self) -> bool:
         """Return whether the emergency-stop loop is closed."""
         return self._estop.value() == 1
+
+    def alert(self) -> bool:
+        """Return whether the monitor has seen too much current; it has opened the outputs by itself then."""
+        return self._alert.value() == 0
+
+    def wait_us(self, time_us: int) -> None:
+        """Let time pass within a control step."""
+        time.sleep_us(time_us)
 
     def board_decidegc(self) -> int:
         """Return the board's temperature; far outside -40..150 C when the thermistor is open or shorted."""
@@ -79,13 +88,13 @@ class Board:
             self._quiet_ms = time.ticks_add(begin_ms, 1 + len(data) * 10_000 // BAUD)
             self._uart.write(data)
 
-    def watch(self) -> None:
-        """Give the watchdog its short period."""
-        self._watchdog = WDT(timeout=WATCHDOG_MS)
-
     def open(self, path: str, mode: str):
         """Return a file on the flash."""
         return open(path, mode)
+
+    def watch(self) -> None:
+        """Give the watchdog its short period."""
+        self._watchdog = WDT(timeout=WATCHDOG_MS)
 
     def feed(self) -> None:
         """Keep the watchdog quiet for another period."""

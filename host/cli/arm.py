@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from host.cli.connection import connected
-from host.cli.options import json_option, robot_option, time_ms
+from host.cli.options import json_option, robot_option, time_ms, without_option
 from host.cli.output import emit
 
 
@@ -15,14 +15,15 @@ from host.cli.output import emit
 @click.option(
     "--for", "hold_ms", type=time_ms, default="0", metavar="TIME", help="Stay, hold the lease this long, disarm."
 )
+@without_option
 @json_option
-def command(robot: str, lease: int, hold_ms: int, as_json: bool) -> None:
-    """Take a robot's lease, so that it takes orders.
+def command(robot: str, lease: int, hold_ms: int, without: tuple[str, ...], as_json: bool) -> None:
+    """Take a robot's lease, once it has tested every coil, so that it takes orders.
 
     The robot disarms by itself when the lease runs out; `run` and `fire` arm it themselves.
     """
     with connected(robot) as face:
-        face.arm(lease)
+        face.arm(lease, without)
         status = face.status()
         for _ in face.listen(hold_ms):
             pass

@@ -5,9 +5,9 @@ from __future__ import annotations
 import click
 
 from host.cli.connection import connected
-from host.cli.options import duty_permille, json_option, robot_option, time_ms
+from host.cli.options import duty_permille, json_option, robot_option, time_ms, without_option
 from host.cli.output import emit
-from host.errors import RobotFault
+from host.errors import BadRequest, RobotFault
 from host.records import Event, Telemetry
 from host.robot import Robot
 
@@ -22,14 +22,17 @@ PERIOD_MS = 50
     "--duty", type=duty_permille, required=True, metavar="PERCENT", help="Share of the time that they are on."
 )
 @click.option("--hold", type=time_ms, required=True, metavar="TIME", help="Off again after this long.")
+@without_option
 @json_option
-def command(coils: tuple[str, ...], robot: str, duty: int, hold: int, as_json: bool) -> None:
+def command(coils: tuple[str, ...], robot: str, duty: int, hold: int, without: tuple[str, ...], as_json: bool) -> None:
     """Heat coils or groups for a limited time: arms, fires, watches until they are off, disarms."""
     with connected(robot) as face:
-        labels = face.profile.named(face.profile.mask(coils))
+        labels = face.profile.named(face.profile.mask(coils) & ~face.profile.mask(without))
+        if not labels:
+            raise BadRequest("nothing to fire: every coil that was named is among those of --without")
         face.subscribe(PERIOD_MS)
-        face.arm()
-        face.fire(coils, duty, hold)
+        face.arm(without=without)
+        face.fire(labels, duty, hold)
         peaks = _peaks(face, hold + AFTER_MS)
         face.disarm()
     fired = {label: peaks.get(label) for label in labels}

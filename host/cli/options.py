@@ -20,6 +20,13 @@ def robot_option(required: bool = True) -> Callable[[F], F]:
     )
 
 
+def without_option(command: F) -> F:
+    """Add --without: labels or groups, with commas between them, or given more than once."""
+    return click.option(
+        "--without", multiple=True, callback=_split, metavar="COIL,...", help="Broken: not tested, never driven."
+    )(command)
+
+
 def json_option(command: F) -> F:
     """Add --json; errors are then told on stdout as well."""
     return click.option(
@@ -43,6 +50,11 @@ def _measured(text: str, factors: dict[str, int]) -> int:
     if match is None or match[2] not in ("", *factors):
         raise click.BadParameter(f"{text!r}: write a number and {' or '.join(factors)}")
     return round(float(match[1]) * (factors[match[2]] if match[2] else next(iter(factors.values()))))
+
+
+def _split(ctx: click.Context, param: click.Parameter, values: tuple[str, ...]) -> tuple[str, ...]:
+    """Return what stands between the commas."""
+    return tuple(name.strip() for value in values for name in value.split(",") if name.strip())
 
 
 def _remember(ctx: click.Context, param: click.Parameter, value: bool) -> bool:

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from host.cli.options import json_option, robot_option
+from host.cli.options import json_option, robot_option, without_option
 from host.cli.output import emit, json_line, note, writing
 from host.cli.progress import shown
 from host.cli.scripts import place, proven
@@ -29,11 +29,13 @@ from host.view import check_pictures, draw_run
 @click.option("--dry-run", is_flag=True, help="Check and upload, but do not arm: nothing moves.")
 @click.option("--log", "log_path", type=click.Path(path_type=Path), metavar="FILE.mcap", help="Record everything.")
 @click.option("--plot", "plot_path", type=click.Path(path_type=Path), metavar="FILE.svg", help="Draw the run.")
+@without_option
 @json_option
 def command(
     script: str,
     robot: str | None,
     params: tuple[str, ...],
+    without: tuple[str, ...],
     dry_run: bool,
     log_path: Path | None,
     plot_path: Path | None,
@@ -56,8 +58,9 @@ def command(
             keeper.recording.title = f"{Path(script).name} on {address}"
             compiled, worst = proven(tree, face.profile, params)
             _attach(log, compiled, face, address)
-            with shown(len(compiled.code), worst.longest_ms / 1000, quiet=as_json) as progress:
-                ending, took = _run(face, compiled.program, dry_run, progress)
+            coils = len(face.profile.labels)
+            with shown(len(compiled.code), coils, worst.longest_ms / 1000, quiet=as_json) as progress:
+                ending, took = _run(face, compiled.program, dry_run, without, progress)
             facts = Facts(compiled, address, face.info(), face.statistics(), link.observer, took)
             fields = report(ending, keeper.recording, facts)
         if log:
@@ -72,14 +75,16 @@ def command(
         raise error
 
 
-def _run(face: Robot, code: bytes, dry_run: bool, progress: Progress) -> tuple[Ending | None, Took]:
+def _run(
+    face: Robot, code: bytes, dry_run: bool, without: tuple[str, ...], progress: Progress
+) -> tuple[Ending | None, Took]:
     """Run the program, or only upload it; return how it ended and how long it took."""
     begun = wall_s(), face.link.now_s()
     ending = None
     if dry_run:
         upload(face, code, progress)
     else:
-        ending = run(face, code, progress)
+        ending = run(face, code, progress, without)
     return ending, Took(wall_s() - begun[0], face.link.now_s() - begun[1])
 
 
