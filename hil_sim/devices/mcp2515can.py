@@ -41,7 +41,7 @@ class Mcp2515Can:
         self.silent = False
         self.bit_ns = 0
         self._clock = clock
-        self._wire = wire
+        self.wire = wire
         self._crystal_hz = crystal_hz
         self._interrupted = interrupted
         self._level = 1
@@ -95,7 +95,7 @@ class Mcp2515Can:
         if not self._pending(buffer):
             at = regs.TX[buffer]
             self.registers[at] = self.registers[at] & PRIORITY | TXREQ
-            self._wire.request()
+            self.wire.request()
             self._loop()
 
     def clear(self, flags: int) -> None:
@@ -218,7 +218,7 @@ class Mcp2515Can:
                 self._flag(buffer, ABTF)
                 self._done(buffer)
         self._change_mode()
-        self._wire.request()
+        self.wire.request()
 
     def _change_mode(self) -> None:
         asked = self.registers[regs.CANCTRL] & REQOP
@@ -233,7 +233,7 @@ class Mcp2515Can:
         if mode in (CONFIGURATION, LISTEN_ONLY):
             self.errors.reset()
         self._note_errors()
-        self._wire.request()
+        self.wire.request()
         self._loop()
 
     def _bit_time_ns(self) -> int:
