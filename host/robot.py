@@ -182,7 +182,7 @@ class Robot:
 
     def change(self, name: str, value: int, coil: str | None = None) -> None:
         """Change a setting, one of SETTING_NAMES, and have the robot keep it."""
-        channel = NONE if coil is None else self.profile.labels.index(coil)
+        channel = NONE if coil is None else self.profile.mask([coil]).bit_length() - 1
         self._order(messages.SET, setting=messages.SETTING_NAMES.index(name), channel=channel, value=value)
 
     def subscribe(self, period_ms: int) -> None:

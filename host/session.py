@@ -24,6 +24,7 @@ from host.errors import (
     SoftrigError,
 )
 from host.handshake import Handshake, differing_lines, profile_text
+from host.kept import FaultPage, Settings, faults_of, settings_of
 from host.profile import Profile, read_profile
 from host.records import (
     Event,
@@ -51,6 +52,8 @@ PROBE_MS = 500  # of silence, or without an answer, before hello is said again
 SILENT_MS = 2000
 ANSWER_MS = 5000
 
+Answer = Status | FaultPage | Settings
+
 
 class Asked(NamedTuple):
     """An order that waits for its answer."""
@@ -67,7 +70,7 @@ class Session:
         self.number = number
         self.profile: Profile | None = None
         self.dictionary = b""
-        self.answers: dict[int, Refused | Status | None] = {}
+        self.answers: dict[int, Refused | Answer | None] = {}
         self.holds_lease = False
         self.clock = RobotClock()
         self.last: Telemetry | None = None
@@ -209,7 +212,7 @@ class Session:
         return event
 
     def _answered(self, kind: int, payload: bytes, labels: tuple[str, ...], now_ms: int) -> None:
-        answer: Refused | Status | None = None
+        answer: Refused | Answer | None = None
         if kind == messages.OK.number:
             seq = messages.OK.unpack(payload).request
             asked = self._asked.pop(seq, None)
@@ -224,9 +227,13 @@ class Session:
         elif kind == messages.STATUS.number:
             seq = messages.STATUS.unpack(payload).request
             asked = self._asked.pop(seq, None)
-            answer = status_of(payload, labels, now_ms)
+            answer = status = status_of(payload, labels, now_ms)
             if asked:
-                self._compare(answer.uptime_ms, self._expected_ms(asked.at_ms, SLACK_MS), answer.state, now_ms)
+                self._compare(status.uptime_ms, self._expected_ms(asked.at_ms, SLACK_MS), status.state, now_ms)
+        elif kind in (messages.FAULTS.number, messages.SETTINGS.number):
+            answer = faults_of(payload, labels) if kind == messages.FAULTS.number else settings_of(payload, labels)
+            seq = payload[0]
+            asked = self._asked.pop(seq, None)
         else:
             return
         if asked and not self._trouble:

@@ -1,0 +1,48 @@
+"""`softrig faults`: what a robot remembers of its faults, also of those before its last reset or power cut."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict
+
+import click
+
+from host.cli.connection import connected
+from host.cli.options import json_option, robot_option
+from host.cli.output import emit
+from host.kept import Fault
+from protocol import codes
+
+
+@click.command("faults")
+@click.option("--clear", is_flag=True, help="Forget them, once they are told.")
+@robot_option()
+@json_option
+def command(robot: str, as_json: bool, clear: bool) -> None:
+    """List the last faults of a robot, newest first, also those before its last reset or power cut.
+
+    Starts of the firmware are counted as far as they had a fault to keep; times are since that start.
+    """
+    with connected(robot) as face:
+        faults = face.faults()
+        if clear:
+            face.clear_faults()
+    emit(as_json, {"faults": [_fields(fault) for fault in faults], "cleared": clear}, _lines(faults, clear))
+
+
+def _fields(fault: Fault) -> dict[str, object]:
+    row = codes.row(fault.code)
+    return {**asdict(fault), "code": row.name if row else fault.code, "unit": row.unit if row else ""}
+
+
+def _lines(faults: list[Fault], cleared: bool) -> Iterator[str]:
+    if not faults:
+        yield "no faults are kept"
+    for fault in faults:
+        row = codes.row(fault.code)
+        what = f"{row.name} {row.cause}" if row else f"code {fault.code}, unknown to this version"
+        where = f", coil {fault.coil}" if fault.coil else ""
+        figure = f" ({fault.value} {row.unit})" if row and row.unit else ""
+        yield f"start {fault.start} ({fault.cause}), {fault.now_ms / 1000:.3f} s, {fault.state}{where}: {what}{figure}"
+    if cleared and faults:
+        yield "cleared"
