@@ -28,6 +28,8 @@ COMMANDS = {
     "fire": "Heat coils for a limited time.",
     "stop": "Switch everything off at once, from any state.",
     "clear": "Leave the tripped state after a stop or a fault.",
+    "faults": "List the faults that a robot has kept.",
+    "settings": "List or change what a robot keeps of itself.",
     "check": "Prove a script against the limits of its robot.",
     "run": "Check a script, run it, watch and report.",
     "explain": "Explain an error, refusal or fault code.",
