@@ -1,8 +1,9 @@
 """Measures in turn, while the robot is armed: each coil that is on, then whether nothing flows with every output off.
 
 One sense slot every SLOT_EVERY control steps, so that it costs 0.6 % of the time. When the mean current is more than
-the orders explain, the slot with every output off comes at once: only what it measures is a fault. So the tolerance of
-that sum may be narrow, and neither phase changes, ramps nor aliasing of the averages can trip the robot.
+the orders explain, the slot with every output off comes at once, then the next coil of the round, and so on: only
+what they measure is a fault. So the tolerance of that sum may be narrow, and neither phase changes, ramps nor aliasing
+of the averages can trip the robot.
 """
 
 from firmware.channels import NONE, bits
@@ -31,6 +32,7 @@ class Patrol:
         self._since = 0
         self._last = NONE
         self._doubts = 0
+        self._asked = False  # whether the slot with every output off was the last one, for a doubt
         self._mohm = 0
 
     def step(self) -> int:
@@ -42,10 +44,13 @@ class Patrol:
         self._doubt()
         if self._since < DOUBT_AFTER:
             return 0
-        if self._doubts >= DOUBTS_MAX:
+        doubted = self._doubts >= DOUBTS_MAX
+        if doubted and not self._asked:
+            self._asked = True
             return self._look_at(NONE)
-        if self._since < SLOT_EVERY:
+        if not doubted and self._since < SLOT_EVERY:
             return 0
+        self._asked = False
         self._last = self._next()
         return self._look_at(self._last)
 
@@ -90,7 +95,12 @@ class Patrol:
 
     def _coil(self, channel: int) -> int:
         """Measure a coil, a second time before it is called broken; look whether it was another one that took more."""
-        code = self._measured(channel) and self._measured(channel)
+        code = self._measured(channel)
+        mohm = self._mohm
+        if code and not self._measured(channel):
+            code = 0
+        elif code == codes.COIL_SHORT:
+            self._mohm = mohm  # the alert may have opened the outputs since, so that the second look saw no current
         if code == codes.COIL_SHORT and self._nothing_flows():
             return codes.EXCESS_CURRENT
         self.channel = channel
