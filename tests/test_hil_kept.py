@@ -18,6 +18,12 @@ def reconnected(rig):
     return rig.robot.faults(), rig.robot.settings()
 
 
+def change_all(rig, coils, mohm):
+    """Change the resistance of one coil after the other."""
+    for coil in coils:
+        rig.robot.change("resistance_mohm", mohm, coil)
+
+
 def named(faults):
     return [codes.row(fault.code).name for fault in faults]
 
@@ -131,8 +137,7 @@ def test_a_power_cut_in_any_write_of_settings_leaves_those_before_or_after(opera
         rig.robot.change("resistance_mohm", mohm, coil)
     rig.bench.board.flash.cut_at = operation
     with pytest.raises(LinkLost):
-        for coil in "AB":
-            rig.robot.change("resistance_mohm", 9900, coil)
+        change_all(rig, "AB", 9900)
 
     settings = reconnected(rig)[1]
 
