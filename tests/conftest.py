@@ -1,11 +1,15 @@
 """Fixtures of all tests."""
 
+import weakref
+
 import pytest
 from hypothesis import settings
 
+from hil_sim.bench import Bench
 from hil_sim.physics import circuit, coil
 from hil_sim.physics.compiled import prepare
 from tests.hil_rig import HilRig
+from tests.witness import Witness
 
 settings.register_profile("softrig", derandomize=True, deadline=None)  # the same examples on every machine
 settings.load_profile("softrig")
@@ -16,6 +20,38 @@ def fresh_kernels():
     """Machine code of older sources is dropped before any test calls a kernel by itself."""
     prepare(coil.advance)
     prepare(circuit.solve)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def witnesses():
+    """A witness of every bench from its first moment on; the list holds those that nobody has asked yet."""
+    fresh, build = [], Bench.__init__
+
+    def witnessed(bench, *parts, **options):
+        build(bench, *parts, **options)
+        bench.witness = Witness(bench)
+        fresh.append(bench.witness)
+
+    Bench.__init__ = witnessed
+    yield fresh
+    Bench.__init__ = build
+
+
+@pytest.fixture(scope="session")
+def older():
+    """Benches that outlive the test that made them."""
+    return weakref.WeakSet()
+
+
+@pytest.fixture(autouse=True)
+def invariants(witnesses, older):
+    """Whatever a test is about: no coil was on without an order, for too long or too hot (invariants.py)."""
+    yield
+    ours = [*witnesses, *(bench.witness for bench in older)]
+    told = [text for witness in ours if witness.asked_us != witness.bench.clock.now_us for text in witness.broken()]
+    older.update(witness.bench for witness in witnesses)
+    witnesses.clear()
+    assert not told, "\n".join(told)
 
 
 @pytest.fixture

@@ -1,0 +1,168 @@
+"""What a host's bytes allow a robot to do, read off the line with the same `protocol` that both ends use.
+
+A claim says that some coils may be on from one moment to another. `Ledger` is handed each byte that the firmware read
+and each that it sent, with the bench's time, and keeps the claims and how long the lease lived. What the robot's
+answers leave open is allowed, so that whoever holds a run against a ledger accuses no innocent robot.
+
+    ledger = Ledger(profile)
+    ledger.heard(data, now_us)
+    ledger.claims, ledger.alive
+"""
+
+from math import inf
+
+from host.profile import Profile
+from protocol import frames, messages, program
+from protocol.link import Link, Received
+from tests.claims import Claim, budgets
+
+ENDED = (messages.FINISHED, messages.ABORTED, messages.TRIP, messages.DISARMED)
+TEST_US = 2_000_000  # the longest that a self-test takes between `arm` and its answer
+PULSES_US = 20_000  # and all of it that one coil is on
+
+
+class Ledger:
+    """The orders of one robot's hosts; `alive` lists (time, until when a coil may be on by the lease, from then on)."""
+
+    def __init__(self, profile: Profile, seed: int) -> None:
+        self.claims: list[Claim] = []
+        self.alive: list[tuple[int, float]] = [(0, 0)]
+        self._profile = profile
+        self._seed = seed
+        self._reads = 0
+        self._current: list[Claim] = []
+        self.reset(0)
+
+    def reset(self, now_us: int) -> None:
+        """The robot has begun anew: no order holds any more."""
+        self._end_all(now_us)
+        self._lease_us = 0.0
+        self._outlives = False
+        self._session = 0
+        self._armed_us = now_us
+        self._upload = bytearray()
+        self._may_outlive = self._doubtful = False
+        self._stop = frames.StopFinder()
+        self._host, self._robot = Link(self._seed), Link(self._seed)
+        self._open: dict[int, tuple[messages.Message, Claim | None, object]] = {}
+
+    def heard(self, data: bytes, now_us: int) -> None:
+        """Take bytes that the firmware has read."""
+        if self._stop.feed(data):
+            self._end_all(now_us)
+        self._reads += 1
+        for received in self._host.receive(data, self._reads):
+            self._ordered(received, now_us)
+        if self._host.heard_ms == self._reads:
+            self._live(now_us)
+
+    def told(self, data: bytes, now_us: int) -> None:
+        """Take bytes that the firmware has sent."""
+        for received in self._robot.receive(data, 0):
+            message = messages.by_number(received.kind)
+            if message is None:
+                continue
+            answer = message.unpack(received.payload)
+            if message is messages.IDENTITY:
+                self._greeted(answer)
+            elif message is messages.EVENT and answer.event in ENDED:
+                self._ended(answer.event, now_us)
+            elif message in (messages.OK, messages.REFUSED) and answer.request in self._open:
+                self._answered(*self._open.pop(answer.request), message is messages.OK, now_us)
+
+    def _ordered(self, received: Received, now_us: int) -> None:
+        message = messages.by_number(received.kind)
+        if message is None or received.kind < frames.UNSEEDED_BELOW:
+            return
+        try:
+            order = message.unpack(received.payload)
+        except ValueError:
+            return
+        claim = None
+        if message is messages.DISARM:
+            self._end_all(now_us)
+        elif message is messages.ARM:
+            claim = self._armed(order, now_us)
+        elif message is messages.FIRE and order.duty_permille:
+            claim = Claim(order.coils, now_us, now_us + order.hold_ms * 1000)
+        elif message is messages.START:
+            claim = Claim((1 << 32) - 1, now_us, inf, of_program=True)
+        elif message is messages.PROGRAM:
+            self._begin(order.header)
+        elif message is messages.CODE:
+            self._upload[order.offset : order.offset + len(order.code)] = order.code
+        elif message is messages.CANCEL:
+            self._cancel(now_us)
+        if claim is not None:
+            self._add(claim, now_us)
+        self._open[received.seq] = (message, claim, order)
+
+    def _armed(self, order: object, now_us: int) -> Claim:
+        lease_us = 1000 * (order.lease_ms or self._profile.session.lease_ms)
+        self._lease_us = max(self._lease_us, lease_us)
+        self._armed_us = now_us
+        pulses = dict.fromkeys(range(len(self._profile.channels)), PULSES_US)
+        return Claim((1 << len(pulses)) - 1, now_us, now_us + TEST_US, pulses)
+
+    def _begin(self, header: bytes) -> None:
+        self._upload, self._doubtful = bytearray(), False
+        try:
+            self._may_outlive = bool(program.read_header(header).flags & program.OUTLIVES_HOST)
+        except program.BadProgram:
+            self._doubtful = True
+
+    def _cancel(self, now_us: int) -> None:
+        for claim in self._current:
+            if claim.of_program and claim.limited:
+                claim.end(now_us)
+
+    def _answered(self, message: messages.Message, claim: Claim | None, order: object, ok: bool, now_us: int) -> None:
+        if not ok:
+            self._doubtful = self._doubtful or message in (messages.PROGRAM, messages.CODE)
+            if claim is not None:
+                claim.end(now_us if message is messages.ARM else claim.from_us)  # the self-test has been
+        elif message is messages.ARM:
+            self._lease_us = 1000.0 * (order.lease_ms or self._profile.session.lease_ms)
+        elif message is messages.FIRE:
+            self._replaced(order.coils, claim, now_us)
+        elif message is messages.START and not self._doubtful:
+            self._outlives = self._may_outlive
+            claim.budget_us = dict(budgets(bytes(self._upload)))
+            self._live(now_us)
+
+    def _replaced(self, coils: int, by: Claim | None, now_us: int) -> None:
+        """End what older orders say of these coils: the newest order alone holds."""
+        for claim in self._current:
+            if claim is not by and claim.mask & coils:
+                if claim.mask & ~coils:
+                    rest = Claim(claim.mask & ~coils, claim.from_us, claim.until_us, claim.budget_us, claim.of_program)
+                    self._add(rest, now_us)
+                claim.mask &= coils
+                claim.end(now_us)
+
+    def _ended(self, event: int, now_us: int) -> None:
+        """Take the robot's word that it is off, unless it may be an old one: the robot was armed since."""
+        if self._outlives:
+            self._outlives = False
+            self._live(now_us)
+        if event in (messages.TRIP, messages.DISARMED) and now_us - self._armed_us > 500_000:
+            self._end_all(now_us)
+
+    def _greeted(self, identity: object) -> None:
+        if identity.role == messages.HOLDER and identity.session != self._session:
+            self._session = identity.session
+            self._host.reset(self._seed)
+            self._robot.reset(self._seed)
+            self._open.clear()
+
+    def _live(self, now_us: int) -> None:
+        self.alive.append((now_us, inf if self._outlives else now_us + self._lease_us))
+
+    def _add(self, claim: Claim, now_us: int) -> None:
+        self.claims.append(claim)
+        self._current = [each for each in self._current if each.until_us > now_us] + [claim]
+
+    def _end_all(self, now_us: int) -> None:
+        for claim in self._current:
+            claim.end(now_us)
+        self._current = []

@@ -1,0 +1,112 @@
+"""Ears on a bench: what goes over its line, what its coils get, what is done to it. Costs next to nothing until asked.
+
+witness = Witness(bench)
+bench.run(2)
+witness.broken()        # sentences about the invariants that did not hold
+"""
+
+from zlib import crc32
+
+from hil_sim.bench import Bench
+from hil_sim.journal import FAULT
+from host.errors import SoftrigError
+from host.profile import Profile, read_profile
+from protocol import messages
+from tests.invariants import Excuse, Run, broken, excuse_of, spells_of
+from tests.orders import Ledger
+
+HEARD, TOLD, RESET = range(3)
+
+
+class Witness:
+    """Notes what happens on one bench, from its first moment on."""
+
+    def __init__(self, bench: Bench) -> None:
+        self.bench = bench
+        self.asked_us = -1  # bench's time of the last question
+        self._line: list[tuple[int, int, bytes]] = []
+        self._energy_j: list[tuple[int, list[float]]] = []
+        self._excuses: list[tuple[int, Excuse]] = []
+        self._at_line()
+        self._at_parts()
+
+    def excuse(self, excuse: Excuse) -> None:
+        """Ask less of the rest of the run."""
+        self._excuses.append((self.bench.clock.now_us, excuse))
+
+    def broken(self) -> list[str]:
+        """Return a sentence for each invariant that did not hold so far; none for firmware that is not ours."""
+        self.asked_us = self.bench.clock.now_us
+        run = self.run()
+        return [] if run is None else list(broken(run))
+
+    def run(self) -> Run | None:
+        """Return the run so far, or None when the flash holds no robot of ours."""
+        bench = self.bench
+        text = profile_text(bench)
+        profile = _profile(text)
+        if profile is None:
+            return None
+        ledger = Ledger(profile, crc32(messages.dictionary(text)))
+        for time_us, kind, data in self._line:
+            if kind == RESET:
+                ledger.reset(time_us)
+            elif kind == HEARD:
+                ledger.heard(data, time_us)
+            else:
+                ledger.told(data, time_us)
+        now_us = bench.clock.now_us
+        spells = [spells_of(coil.history, now_us) for coil in bench.coils]
+        energies = [*self._energy_j, (now_us, bench._energy_j.tolist())]
+        return Run(profile, ledger, spells, bench._peak_degc.tolist(), energies, self._excuses)
+
+    def _at_line(self) -> None:
+        """Listen at the device's end of the line."""
+        line, uart = self._line, self.bench.board.uart
+        read, write = uart.read, uart.write
+
+        def reads(count: int, now_us: int) -> bytes:
+            data = read(count, now_us)
+            if data:
+                line.append((now_us, HEARD, data))
+            return data
+
+        def writes(data: bytes, now_us: int) -> int:
+            count = write(data, now_us)
+            line.append((now_us, TOLD, data[:count]))
+            return count
+
+        uart.read, uart.write = reads, writes
+
+    def _at_parts(self) -> None:
+        """Listen at reset, gates and the journal's faults."""
+        bench, board, line, energy_j = self.bench, self.bench.board, self._line, self._energy_j
+        changed, reset, note = board.changed, board.reset_processor, bench.journal.note
+
+        def changes() -> None:
+            changed()
+            energy_j.append((bench.clock.now_us, bench._energy_j.tolist()))
+
+        def resets(cause: int) -> None:
+            line.append((bench.clock.now_us, RESET, b""))
+            reset(cause)
+
+        def notes(time_us: int, kind: int, which: int, data: bytes) -> None:
+            note(time_us, kind, which, data)
+            if kind == FAULT:
+                self._excuses.append((time_us, excuse_of(data.decode("latin-1"))))
+
+        board.changed, board.reset_processor, bench.journal.note = changes, resets, notes
+
+
+def profile_text(bench: Bench) -> bytes:
+    """Return the robot's profile as it stands on the flash, nothing where there is none."""
+    flash = bench.board.flash
+    return next((flash.read(path) for path in flash.paths() if path.endswith("robot.json")), b"")
+
+
+def _profile(text: bytes) -> Profile | None:
+    try:
+        return read_profile(text)
+    except (SoftrigError, ValueError):
+        return None
