@@ -12,6 +12,7 @@ NOT_ARMED, TRIPPED, UNKNOWN_CHANNEL, DUTY_LIMIT, HOLD_LIMIT, LEASE_HELD = 1, 2, 
 AT_ONCE_LIMIT, RESTING, BAD_PAYLOAD, UNKNOWN_MESSAGE, BAD_HEADER, OTHER_ROBOT = 7, 8, 9, 10, 11, 12
 TOO_LARGE, BAD_CODE, BUSY, NO_PROGRAM, LEASE_LIMIT, CAUSE_REMAINS = 13, 14, 15, 16, 17, 18
 OTHER_VERSION, NO_ATTITUDE, SETTING_LIMIT, NOT_WHILE_ARMED, FLASH_FAILED = 19, 20, 21, 22, 23
+NOT_COLD = 24
 STOP, ESTOP, LEASE_EXPIRED, HEAT_BUDGET, OVER_TEMPERATURE, OVER_CURRENT = 101, 102, 103, 104, 105, 106
 SUPPLY_LOW, CHIP, SENSOR, GUARD, WAIT_TIMEOUT, WATCHDOG = 107, 108, 109, 110, 111, 112
 STRAY_CURRENT, ON_TOO_LONG, REFUSED_STEP, SUPPLY_HIGH = 113, 114, 115, 116
@@ -108,9 +109,9 @@ CODES = (
     ),
     Code(
         BUSY, "R15", "",
-        "A program is running.",
+        "A program is running, or the self-test that stands before arming.",
         NOTHING,
-        "Wait for its end or cancel it.",
+        "Wait for its end, or cancel the program.",
     ),
     Code(
         NO_PROGRAM, "R16", "",
@@ -159,6 +160,12 @@ CODES = (
         "The flash did not take the record.",
         "The record before it stands.",
         "Try again; replace the board if it persists.",
+    ),
+    Code(
+        NOT_COLD, "R24", "0.1 C",
+        "The coil may still be warm: its resistance would be that of another phase.",
+        NOTHING,
+        "Let it cool; after a reset the robot takes every coil as hot until it must have cooled.",
     ),
     Code(
         STOP, "F01", "",

@@ -45,7 +45,7 @@ class Bare:
     def __init__(self, code: bytes, data=ROUND, attitude=None) -> None:
         profile, board = Profile(json.dumps(data).encode()), Table()
         outputs = [(Chip(), output) for output in range(8)]
-        self.channels = Channels(outputs, profile.coil, profile.supply.at_once_max)
+        self.channels = Channels([], outputs, profile.coil, profile.supply.at_once_max)
         self.sense = Sense(board, board.supply, 8, profile)
         self.player = Player(self.channels, self.sense, attitude or Blind())
         self.on_ms, self.heat_uj, self.at_once, self.too_long = [0] * 8, [0] * 8, 0, -1
