@@ -17,13 +17,15 @@ class Commands:
     def __init__(self, core) -> None:
         self.upload = Upload(core.profile)
         self._core = core
-        self._arming = -1  # number of the arming that waits for its self-test, -1: none
+        self._arming = -1  # number of the order that waits for its self-test, -1: none
+        self._calibrates = False  # that order; else it arms
         self._lease_ms = 0  # that it asked for
         self._orders = (
             (messages.ARM, self._arm), (messages.DISARM, self._disarm), (messages.CLEAR, self._clear),
             (messages.FIRE, self._fire), (messages.STATUS_REQUEST, self._status),
             (messages.SUBSCRIBE, self._subscribe), (messages.PROGRAM, self._program), (messages.CODE, self._piece),
             (messages.START, self._start), (messages.CANCEL, self._cancel), (messages.COILS_REQUEST, self._coils),
+            (messages.CALIBRATE, self._calibrate),
         ) + core.records.orders()  # fmt: skip
 
     def serve(self, received) -> None:
@@ -38,13 +40,13 @@ class Commands:
             self.answer(messages.OK, request=received.seq)
 
     def go_on(self) -> None:
-        """Answer an arming whose self-test is done, go on verifying a program that waits to be started."""
+        """Answer an order whose self-test is done, go on verifying a program that waits to be started."""
         if self._arming >= 0 and self._core.control.selftest.done:
             self._tested()
         self._verify()
 
     def give_up(self, code: int) -> None:
-        """Refuse an arming that waits for its self-test."""
+        """Refuse an order that waits for its self-test."""
         if self._arming >= 0:
             self._refuse(self._arming, Refused(code))
             self._arming = -1
@@ -56,15 +58,23 @@ class Commands:
         self._arming = self.upload.request = -1
 
     def _tested(self) -> None:
-        """Arm after a self-test in which every coil was whole, else refuse with its code."""
+        """Arm or calibrate after a self-test in which every coil was whole, else refuse with its code."""
         core, test = self._core, self._core.control.selftest
         request, self._arming = self._arming, -1
+        without = core.channels.without_mask
         test.done = False
-        if test.code:
+        if test.code or self._calibrates:
             core.control.all_off(core.now_ms)
-            self._refuse(request, Refused(test.code, test.channel, test.value, test.limit))
+        try:
+            if test.code:
+                raise Refused(test.code, test.channel, test.value, test.limit)
+            if self._calibrates:
+                core.records.calibrate(without)
+            else:
+                core.arm(self._lease_ms)
+        except Refused as refused:
+            self._refuse(request, refused)
         else:
-            core.arm(self._lease_ms)
             self.answer(messages.OK, request=request)
 
     def _verify(self) -> None:
@@ -98,22 +108,39 @@ class Commands:
         """Begin the self-test, whose end answers; a robot that is armed, and without the same coils, just goes on."""
         core = self._core
         lease_ms = order.lease_ms or core.profile.lease_ms
-        if order.session != core.session:
-            raise Refused(codes.LEASE_HELD)
+        self._testable(order)
         if lease_ms > core.profile.lease_max_ms:
             raise Refused(codes.LEASE_LIMIT, 255, lease_ms, core.profile.lease_max_ms)
+        if core.state == messages.ARMED and order.without == core.channels.without_mask:
+            core.arm(lease_ms)
+            return False
+        self._lease_ms = lease_ms
+        self._test(order.without, seq, False)
+        return True
+
+    def _calibrate(self, order, seq: int) -> bool:
+        """Begin the self-test, whose end answers."""
+        self._testable(order)
+        if not self._core.at_rest():
+            raise Refused(codes.NOT_WHILE_ARMED)
+        self._core.records.must_be_cold(order.without)
+        self._test(order.without, seq, True)
+        return True
+
+    def _testable(self, order) -> None:
+        core = self._core
+        if order.session != core.session:
+            raise Refused(codes.LEASE_HELD)
         if order.without >> core.channels.count:
             raise Refused(codes.UNKNOWN_CHANNEL, 255, order.without, (1 << core.channels.count) - 1)
         self._not_running()
         self._not_tripped()
-        if core.state == messages.ARMED and order.without == core.channels.without_mask:
-            core.arm(lease_ms)
-            return False
-        core.disarm()
-        core.channels.without_mask = order.without
-        core.control.selftest.begin(order.without)
-        self._arming, self._lease_ms = seq, lease_ms
-        return True
+
+    def _test(self, without: int, seq: int, calibrates: bool) -> None:
+        self._core.disarm()
+        self._core.channels.without_mask = without
+        self._core.control.selftest.begin(without)
+        self._arming, self._calibrates = seq, calibrates
 
     def _disarm(self, order, seq: int) -> None:
         self._core.disarm()

@@ -49,6 +49,20 @@ class Records:
         if self._core.at_rest():
             self.faults.keep(self._core.now_ms)
 
+    def must_be_cold(self, without: int) -> None:
+        """Raise Refused if a coil, but for these, may not be all martensite."""
+        control, coil = self._core.control, self._core.profile.coil
+        for channel in range(control.channels.count):
+            temperature = control.sense.temperature_millidegc[channel]
+            if not without >> channel & 1 and temperature >= coil.mf_millidegc:
+                raise Refused(codes.NOT_COLD, channel, temperature // 100, coil.mf_millidegc // 100)
+
+    def calibrate(self, without: int) -> None:
+        """Keep the resistances that a self-test has just measured, but for these coils, or raise Refused."""
+        mohm = self._core.control.resistance.mohm
+        self.settings.calibrate([0 if without >> i & 1 else min(mohm[i], 0xFFFF) for i in range(len(mohm))])
+        self._apply()
+
     def _faults(self, order, seq: int) -> bool:
         faults = self.faults
         self._core.commands.answer(
@@ -76,7 +90,11 @@ class Records:
         self._apply()
 
     def _apply(self) -> None:
-        self._core.sense.board_offset_decidegc = self.settings.board_offset_decidegc
+        control, settings = self._core.control, self.settings
+        control.sense.board_offset_decidegc = settings.board_offset_decidegc
+        for channel in range(len(settings.measured_mohm)):
+            if settings.measured_mohm[channel]:
+                control.resistance.refer(channel, settings.measured_mohm[channel])
 
     def _at_rest(self) -> None:
         if not self._core.at_rest():

@@ -185,6 +185,11 @@ class Robot:
         channel = NONE if coil is None else self.profile.mask([coil]).bit_length() - 1
         self._order(messages.SET, setting=messages.SETTING_NAMES.index(name), channel=channel, value=value)
 
+    def calibrate(self, without: Iterable[str] = ()) -> None:
+        """Have the resistance of every cold coil measured and kept, but for those known to be broken."""
+        broken = self.profile.mask(without)
+        self._order(messages.CALIBRATE, session=self._session.number, without=broken)
+
     def subscribe(self, period_ms: int) -> None:
         """Have telemetry sent at that period; 0 ends it."""
         self._order(messages.SUBSCRIBE, period_ms=period_ms)

@@ -176,6 +176,11 @@ SET = Message(
     Field("value", "i", "Its value, in the unit that ends its name."),
 )  # fmt: skip
 COILS_REQUEST = Message(0x18, "coils_request", "Asks for `coils`.")
+CALIBRATE = Message(
+    0x1C, "calibrate", "Keeps the resistance of every coil, cold and whole, as a self-test measures it.",
+    Field("session", "I", "The session that asks, as in its `hello`."),
+    Field("without", "I", "Bit mask of coils known to be broken: not tested, and what was kept of them stands."),
+)  # fmt: skip
 PROGRAM = Message(
     0x20, "program", "Begins the upload of a program.",
     Field("header", "s", "The program's header, see program.py."),
@@ -271,7 +276,7 @@ EVENT = Message(
 MESSAGES = (
     HELLO, IDENTITY, DICTIONARY, DICTIONARY_PAGE, STOPPED, NAK,
     ALIVE, ARM, DISARM, CLEAR, FIRE, STATUS_REQUEST, SUBSCRIBE,
-    FAULTS_REQUEST, CLEAR_FAULTS, SETTINGS_REQUEST, SET, COILS_REQUEST, PROGRAM, CODE, START, CANCEL,
+    FAULTS_REQUEST, CLEAR_FAULTS, SETTINGS_REQUEST, SET, CALIBRATE, COILS_REQUEST, PROGRAM, CODE, START, CANCEL,
     OK, REFUSED, STATUS, FAULTS, SETTINGS, COILS, TELEMETRY, EVENT,
 )  # fmt: skip
 

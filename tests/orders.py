@@ -17,7 +17,8 @@ from protocol.link import Link, Received
 from tests.claims import Claim, budgets
 
 ENDED = (messages.FINISHED, messages.ABORTED, messages.TRIP, messages.DISARMED)
-TEST_US = 2_000_000  # the longest that a self-test takes between `arm` and its answer
+TESTED = (messages.ARM, messages.CALIBRATE)
+TEST_US = 2_000_000  # the longest that a self-test takes between such an order and its answer
 PULSES_US = 20_000  # and all of it that one coil is on
 
 
@@ -82,7 +83,9 @@ class Ledger:
         if message is messages.DISARM:
             self._end_all(now_us)
         elif message is messages.ARM:
-            claim = self._armed(order, now_us)
+            claim = self._tested(order.lease_ms, now_us)
+        elif message is messages.CALIBRATE:
+            claim = self._tested(0, now_us)
         elif message is messages.FIRE and order.duty_permille:
             claim = Claim(order.coils, now_us, now_us + order.hold_ms * 1000)
         elif message is messages.START:
@@ -97,8 +100,8 @@ class Ledger:
             self._add(claim, now_us)
         self._open[received.seq] = (message, claim, order)
 
-    def _armed(self, order: object, now_us: int) -> Claim:
-        lease_us = 1000 * (order.lease_ms or self._profile.session.lease_ms)
+    def _tested(self, lease_ms: int, now_us: int) -> Claim:
+        lease_us = 1000 * (lease_ms or self._profile.session.lease_ms)
         self._lease_us = max(self._lease_us, lease_us)
         self._armed_us = now_us
         pulses = dict.fromkeys(range(len(self._profile.channels)), PULSES_US)
@@ -120,7 +123,9 @@ class Ledger:
         if not ok:
             self._doubtful = self._doubtful or message in (messages.PROGRAM, messages.CODE)
             if claim is not None:
-                claim.end(now_us if message is messages.ARM else claim.from_us)  # the self-test has been
+                claim.end(now_us if message in TESTED else claim.from_us)  # the self-test has been
+        elif message is messages.CALIBRATE:
+            claim.end(now_us)
         elif message is messages.ARM:
             self._lease_us = 1000.0 * (order.lease_ms or self._profile.session.lease_ms)
         elif message is messages.FIRE:

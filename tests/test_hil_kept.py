@@ -170,3 +170,51 @@ def test_a_power_cut_in_any_write_of_faults_loses_at_most_the_newest(operation):
     assert named(faults) in (["F02"], ["F02", "F02"], ["F02", "F02", "F02"])
     assert not rig.bench.any_coil_on
     rig.link.close()
+
+
+def test_calibration_keeps_what_each_coil_measures_cold(rig):
+    true_mohm = dict(zip("ABCDEFGH", 1000 * rig.bench.plant.resistance, strict=True))
+
+    rig.robot.calibrate(without=["C"])
+
+    measured = rig.robot.settings().resistance_mohm
+    assert measured.pop("C") == 0
+    assert measured == pytest.approx({coil: true_mohm[coil] for coil in measured}, rel=0.01)
+    assert rig.robot.status().state == "idle"
+    assert not rig.bench.board.powered
+    rig.bench.world.power_on()
+    assert reconnected(rig)[1].resistance_mohm["A"] == measured["A"]
+
+
+def test_a_coil_that_is_warm_or_broken_is_not_calibrated(rig):
+    rig.fire("A", duty_percent=60, hold_s=0.5)
+    rig.run(seconds=0.6)
+    assert refused(rig.robot.calibrate) == ("R22", None)
+    rig.robot.disarm()
+    assert refused(rig.robot.calibrate) == ("R24", "A")
+    rig.bench.break_coil("D")
+    assert refused(lambda: rig.robot.calibrate(["A"])) == ("F18", "D")
+
+    assert rig.bench.board.flash.operations == 0
+    assert not rig.bench.board.powered
+
+
+@pytest.mark.parametrize("operation", range(1, WRITE_OPERATIONS + 1))
+def test_a_power_cut_in_the_writing_of_a_calibration_leaves_all_of_it_or_nothing(operation):
+    rig = HilRig()
+    rig.bench.board.flash.cut_at = operation
+    with pytest.raises(LinkLost):
+        rig.robot.calibrate()
+
+    measured = reconnected(rig)[1].resistance_mohm.values()
+
+    assert all(measured) or not any(measured)
+    assert not rig.bench.any_coil_on
+    rig.link.close()
+
+
+def refused(order):
+    """Return code and coil with which an order is refused."""
+    with pytest.raises(Refused) as caught:
+        order()
+    return caught.value.row.name, caught.value.coil

@@ -38,6 +38,7 @@ VECTORS = [
     ("clear_faults", 1, 0x1B, 3, 1, {}, "09111b0301ec98910b00"),
     ("settings_request", 1, 0x19, 4, 1, {}, "091119040145da544700"),
     ("set", 1, 0x1A, 5, 2, {"setting": 2, "channel": 3, "value": 9400}, "09111a05020203b8240105602b8d3500"),
+    ("calibrate", 1, 0x1C, 6, 4, {"session": 0xDEADBEEF, "without": 4}, "0a111c0604efbeadde040101050cef8a7f00"),
     (
         "faults", 1, 0x43, 6, 3,
         {"request": 2, "start": 5, "count": 1, "records": bytes.fromhex("0400000039650c00690003b30400000301")},
