@@ -6,9 +6,11 @@ try at each start until it confirms itself; when none is left the board rolls ba
 service mark, which counts once, and a new program that failed with nothing to fall back to leave the board to its
 console: outputs off, no watchdog. So does Ctrl-C there, after a reset, because nothing else stops the watchdog.
 
-Only main.py knows the record, so that it cannot differ between two slots: the program is handed `confirm`.
+Only main.py knows the record, so that it cannot differ between two slots: the program is handed `settled`, to call
+once it has been healthy for a while. That is said on the console, by slot, so that a deployment hears of a roll-back.
 """
 
+import gc
 import struct
 import sys
 from binascii import crc32
@@ -22,6 +24,7 @@ HEAD = "<2sBxIH"  # mark, version, sequence, length
 SLOT, TRIES, FALLBACK, SERVICE = 0, 1, 2, 3
 CONFIRMED = NOWHERE = 255
 STRAP = 22
+GARBAGE_BYTES = 8192  # collected so often while modules are compiled, their remains leave no holes in the heap
 START_MS = 8000  # to import the program, or to write the flash
 
 
@@ -56,10 +59,14 @@ def change(field: int, value: int) -> None:
     keep(sequence, fields)
 
 
-def confirm() -> None:
-    """Keep the slot that runs for good."""
-    change(TRIES, CONFIRMED)
-    print("softrig: confirmed")
+def settled() -> bool:
+    """Keep the slot that runs for good; return whether that changed the watchdog's time."""
+    fields = load()[1]
+    on_trial = fields[TRIES] != CONFIRMED
+    if on_trial:
+        change(TRIES, CONFIRMED)
+    print("softrig: slot " + SLOTS[fields[SLOT]][1] + " is healthy")
+    return on_trial
 
 
 def chosen(sequence: int, fields: bytearray) -> bool:
@@ -87,11 +94,12 @@ def start() -> None:
         print("softrig: service")
         return
     sys.path.insert(0, SLOTS[fields[SLOT]])
+    gc.threshold(GARBAGE_BYTES)
     WDT(timeout=START_MS)
     try:
         from firmware.main import run  # noqa: PLC0415  (from the slot that was just chosen)
 
-        run(LOUD, None if fields[TRIES] == CONFIRMED else confirm)  # noqa: F821  (boot.py has left LOUD here)
+        run(LOUD, fields[TRIES] != CONFIRMED, settled)  # noqa: F821  (boot.py has left LOUD here)
     except KeyboardInterrupt:
         micropython.kbd_intr(-1)
         change(SERVICE, 1)

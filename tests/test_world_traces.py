@@ -121,7 +121,7 @@ def test_a_pause_to_look_at_the_robot_does_not_change_the_trace():
         ["power-cycle"],
         ["pwm-dead"],
         ["monitor-forgets"],
-        ["bus-stuck", "bus-free"],
+        ["i2c-stuck", "i2c-free"],
         ["thermistor-short"],
         ["estop-open", "estop-close"],
         ["coil-open:A"],

@@ -29,7 +29,8 @@ DONE, OS_ERROR, OTHER_ERROR, INTERRUPTED = range(4)
 FILLED = {"readinto": 0, "readfrom_into": 1, "readfrom_mem_into": 2, "write_readinto": 1}  # which argument is filled
 Request = tuple[int, int, int, int, int]  # operation, object, ticks, length, argument
 HEAD = Struct("<BBHHH")
-_ANSWER = Struct("<QQ")
+_ANSWER = Struct("<IIII")
+_LOW = (1 << 30) - 1
 _PIECE = Struct("<II")  # of a file: where it begins, how long it is
 _OBJECTS_MAX = 256
 
@@ -69,7 +70,8 @@ class Desk:
             return None
         if self._interrupted:
             self._interrupted, value, extra, status = False, 0, b"", INTERRUPTED
-        return _ANSWER.pack(self._processor.ticks_us(), value << 8 | status) + extra
+        now_us = self._processor.ticks_us()
+        return _ANSWER.pack(now_us & _LOW, now_us >> 30, status, value) + extra
 
     def contents(self) -> list[Any]:
         """Return what the module `machine` has: its classes with their constants, its values, its functions."""

@@ -34,7 +34,7 @@ class Files:
         """Carry out a write operation; when the power fails in its middle, it does not return."""
         processor = self._processor
         processor.spend(cost_us(kind, len(data)))
-        processor.board.journal.note(processor.clock.now_us, FLASH, kind, path.encode() + b"\0" + data)
+        processor.board.journal.note(processor.clock.now_us, FLASH, kind, path.lstrip("/").encode() + b"\0" + data)
         if not processor.board.flash.operate(kind, path, data):
             processor.lose_power()
 

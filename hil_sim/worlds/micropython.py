@@ -25,10 +25,10 @@ SILENCE_S = 60.0  # of real time without an access to the hardware: firmware in 
 _CHUNK = 65_536
 
 
-def execute(life: Life) -> None:
+def execute(life: Life, heap_bytes: int = HEAP_BYTES) -> None:
     """Run the firmware of one life of the processor; Crashed when it ends or cannot be run."""
     desk = Desk(life, life.say)
-    process = Process(life.say)
+    process = Process(life.say, heap_bytes)
     try:
         while True:
             answer = desk.serve(*process.request())
@@ -52,14 +52,14 @@ def interpreter() -> str:
 class Process:
     """An interpreter that runs shim/start.py; what it prints is said when it ends."""
 
-    def __init__(self, say: Callable[[str], None]) -> None:
+    def __init__(self, say: Callable[[str], None], heap_bytes: int) -> None:
         self._say = say
         self._line, theirs = socketpair()
         self._line.settimeout(SILENCE_S)
         self._printed = TemporaryFile()  # noqa: SIM115  (closed with the process)
         self._heard = b""
         self._at = 0
-        self._process = _started(theirs, self._printed.fileno())
+        self._process = _started(theirs, self._printed.fileno(), heap_bytes)
         theirs.close()
 
     def request(self) -> tuple[Request, bytes]:
@@ -109,9 +109,9 @@ class Process:
         return Crashed("main has ended" if status == 0 else f"the interpreter ended with status {status}")
 
 
-def _started(theirs: socket, printed: int) -> subprocess.Popen[bytes]:
+def _started(theirs: socket, printed: int, heap_bytes: int) -> subprocess.Popen[bytes]:
     number = theirs.fileno()
-    command = [interpreter(), "-X", f"heapsize={HEAP_BYTES}", str(SHIM / "start.py"), str(number)]
+    command = [interpreter(), "-X", f"heapsize={heap_bytes}", str(SHIM / "start.py"), str(number)]
     environment = {**os.environ, "MICROPYPATH": f"{SHIM}:.frozen"}
     return subprocess.Popen(
         command, env=environment, pass_fds=[number], stdin=subprocess.DEVNULL, stdout=printed, stderr=printed,

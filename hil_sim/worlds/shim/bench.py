@@ -1,7 +1,7 @@
 """The line from a MicroPython process to the bench that owns its hardware and its time.
 
 A request is eight bytes (operation, object, ticks read since the last one, length, argument), then its data. The
-answer is two words, the time since reset and status with value, then its data. No virtual time passes between two
+answer is four words, the time since reset, status and value, then its data. No virtual time passes between two
 requests, so reading the clock needs none: it is counted, and told with the next. What needs no answer (a pin that is
 set, the watchdog that is fed) waits for the next request that does. hil_sim/worlds/desk.py is the other end.
 
@@ -31,7 +31,7 @@ class Line:
         self._file = open(fd, "r+b")
         self._out = bytearray(_POSTED_MAX + 2 * HEAD)
         self._end = 0  # of what waits to be sent
-        self._answer = array("Q", [0, 0])  # time since reset in us; status, value << 8
+        self._answer = array("I", [0, 0, 0, 0])  # time since reset in us, 30 bits and the rest; status; value
         self._errors = {5: OSError(5), 110: OSError(110)}  # raised without allocating
 
     def now_us(self) -> int:
@@ -39,7 +39,7 @@ class Line:
         self.ticks += 1
         if self._end or self.ticks >= _TICKS_MAX:
             self.ask(TIME, 0, 0)
-        return self._answer[0] + self.ticks
+        return self._answer[0] + (self._answer[1] << 30) + self.ticks
 
     def post(self, op: int, which: int, argument: int) -> None:
         """Make a request that has no answer; it goes out with the next one."""
@@ -57,11 +57,9 @@ class Line:
             self._end = 0
         if self._file.readinto(self._answer) != 16:
             raise SystemExit  # the bench is gone
-        status = self._answer[1] & 0xFF
-        value = self._answer[1] >> 8
-        if status:
-            self._fail(status, value)
-        return value
+        if self._answer[2]:
+            self._fail(self._answer[2], self._answer[3])
+        return self._answer[3]
 
     def take(self, buffer) -> None:
         """Fill a buffer with the data that follow the answer."""
