@@ -95,12 +95,7 @@ class Patrol:
 
     def _coil(self, channel: int) -> int:
         """Measure a coil, a second time before it is called broken; look whether it was another one that took more."""
-        code = self._measured(channel)
-        mohm = self._mohm
-        if code and not self._measured(channel):
-            code = 0
-        elif code == codes.COIL_SHORT:
-            self._mohm = mohm  # the alert may have opened the outputs since, so that the second look saw no current
+        code = self._measured(channel) and self._measured(channel)
         if code == codes.COIL_SHORT and self._nothing_flows():
             return codes.EXCESS_CURRENT
         self.channel = channel

@@ -31,12 +31,15 @@ class Slot:
         self._on = _UNTOUCHED  # the coil that was put on alone, or NONE
 
     def measure(self, channel: int) -> int:
-        """Return the resistance of a coil that is on alone; the monitor keeps current and voltage."""
+        """Return the resistance of a coil that is on alone; the monitor keeps current and voltage.
+
+        It is nothing if so much has flowed that the alert has opened the outputs: the monitor may then see no current.
+        """
         if self._begun or not self._channels.is_alone_on(channel):
             self._set(channel)
         self._convert()
         mohm = self._monitor.seen_mohm() - self._wiring_mohm
-        return 0 if mohm < 0 else min(mohm, self._most_mohm)
+        return 0 if mohm < 0 or self._board.alert() else min(mohm, self._most_mohm)
 
     def idle_ma(self) -> int:
         """Return the current that flows while every output is off."""
