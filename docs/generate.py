@@ -12,9 +12,11 @@ from pathlib import Path
 
 import click
 
+from hil_sim import faults
 from host.cli import main as softrig
 from host.gait.errors import ROWS
-from protocol import codes, frames, link, messages, program
+from protocol import causes, frames, link, messages, program
+from tests import fault_table
 
 DOCS = Path(__file__).parent
 ROBOTS = DOCS.parent / "firmware" / "robots"
@@ -63,6 +65,7 @@ def pages() -> Iterator[tuple[str, str]]:
     """Yield the name and the text of each page."""
     yield "protocol.md", MADE + protocol_page()
     yield "codes.md", MADE + codes_page()
+    yield "faults.md", MADE + faults_page()
     yield "limits.md", MADE + limits_page()
     yield "commands.md", MADE + commands_page()
 
@@ -135,7 +138,7 @@ def op_table() -> str:
 
 def codes_page() -> str:
     """Return every refusal, fault and script error; `softrig explain CODE` prints one of them."""
-    robot = [(row.name, str(row.number), row.unit, row.cause, row.did, row.todo) for row in codes.CODES]
+    robot = [(row.name, str(row.number), row.unit, row.cause, row.did, row.todo) for row in causes.CODES]
     script = [(row.code, str(row.exit_code), row.cause, row.todo) for row in ROWS]
     return "\n".join(
         (
@@ -147,6 +150,36 @@ def codes_page() -> str:
             table(("code", "exit", "cause", "what to do"), script),
         )
     )
+
+
+def faults_page() -> str:
+    """Return what can go wrong on the bench and what is promised then."""
+    names = [(f"`{fault.spelled}`", fault.about, "lasts" if fault.ends else "") for fault in faults.TABLE]
+    situations = "\n".join(
+        f"* *{name}*: {'; '.join(f'`{line}`' for line in script.splitlines())}"
+        for name, (script, _) in fault_table.ORDERS.items()
+    )
+    return (
+        (DOCS / "templates" / "faults.md")
+        .read_text(encoding="utf-8")
+        .format(
+            example=fault_table.EXAMPLE,
+            names=table(("name", "what happens", ""), names),
+            promises=table(
+                ("fault", "while", "code", "off [ms]", "ends as", "exit", "way back", "because"),
+                [promise(row) for row in fault_table.ROWS],
+            ),
+            situations=situations.format(one="A", two="A B") + "\n",
+        )
+    )
+
+
+def promise(row: fault_table.Row) -> tuple[str, ...]:
+    """Return one promise as a row of a table."""
+    where = row.during if row.robot == "circular" else f"{row.during}, {row.robot}"
+    off = "-" if row.off_ms is None else str(row.off_ms)
+    status = " or ".join(map(str, row.exit_codes))
+    return f"`{row.fault}`", where, row.code or "-", off, row.ending, status, row.recovers, row.why
 
 
 def limits_page() -> str:

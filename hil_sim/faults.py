@@ -89,6 +89,7 @@ TABLE = (
     ),
     Fault("supply-sag", "The coil supply gives so much less.", mishaps.supply_sag, argument=PERCENT),
     Fault("battery-empty", "The battery on board is at its end.", once(mishaps.battery_empty), False),
+    Fault("battery-full", "The battery on board is charged.", once(mishaps.battery_full), False),
     Fault("brown-out", "The board has no supply: chips and processor forget.", on_off(mishaps.brown_out)),
     Fault(
         "power-cycle", "The board's supply is gone for an instant.", once(lambda bench: bench.world.power_on()), False
@@ -195,8 +196,8 @@ def read(text: str) -> tuple[Fault, Value]:
 def _fits(bench: Bench, fault: Fault, text: str, value: Value) -> None:
     """Raise ValueError when a fault is of something that this bench has not."""
     labels: Sequence[str] = bench.plant.labels
-    if fault.name == "battery-empty" and bench.supply.battery is None:
-        raise ValueError("fault battery-empty: this robot has no battery")
+    if fault.name.startswith("battery-") and bench.supply.battery is None:
+        raise ValueError(f"fault {text}: this robot has no battery")
     if fault.name.startswith("imu-") and bench.board.imu is None:
         raise ValueError(f"fault {text}: this robot has no attitude sensor")
     if fault.argument == LABEL and value not in labels:

@@ -99,6 +99,15 @@ def battery_empty(bench: Bench) -> None:
         bench.supply.battery.charge = 0.0
 
 
+def battery_full(bench: Bench) -> None:
+    """Put a charged battery in, and with it start a board that had none."""
+    if bench.supply.battery is not None:
+        was_cut = bench.supply.battery.cut
+        bench.supply.battery.charge, bench.supply.battery.cut = 1.0, False
+        if was_cut:
+            bench.world.power_on()
+
+
 def brown_out(bench: Bench, out: bool) -> None:
     """Take the board's own supply away: chips and processor forget; or give it back."""
     (bench.world.power_off if out else bench.world.power_on)()

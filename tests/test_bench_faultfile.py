@@ -8,6 +8,7 @@ from hil_sim.address import parse
 from hil_sim.assembly import assemble
 from hil_sim.faultfile import FaultFileError, load
 from host.cli import main
+from tests.fault_table import EXAMPLE
 
 TWO = """seed = 7
 
@@ -52,6 +53,10 @@ def test_a_fault_more_at_the_end_changes_none_before_it(written):
     longer = load(written(TWO + '\n[[fault]]\nname = "hang"\nat_ms = [1, 9000]\n'))
 
     assert longer[:2] == load(written(TWO))
+
+
+def test_the_example_of_the_page_is_a_fault_file(written):
+    assert [one.name for one in load(written(EXAMPLE))] == ["coil-open:A", "line-lose:20"]
 
 
 def test_a_file_without_faults_plans_nothing(written):
