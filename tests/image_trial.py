@@ -212,6 +212,9 @@ def orders(profile):
         (300, messages.PROGRAM, {"header": program.header(code, crc)}),
         (310, messages.CODE, {"offset": 0, "code": code}),
         (320, messages.START, {}),
+        (1900, messages.SETTINGS_REQUEST, {}),
+        (1910, messages.SET, {"setting": messages.NODE, "channel": 255, "value": 3}),
+        (1920, messages.FAULTS_REQUEST, {"skip": 0}),
         (2000, messages.STATUS_REQUEST, {}),
         (2010, messages.FIRE, {"coils": 0x80, "duty_permille": 1000, "hold_ms": 9000}),
     ]

@@ -30,6 +30,7 @@ COMMANDS = {
     "clear": "Leave the tripped state after a stop or a fault.",
     "faults": "List the faults that a robot has kept.",
     "settings": "List or change what a robot keeps of itself.",
+    "calibrate": "Measure and keep the resistance of every coil.",
     "check": "Prove a script against the limits of its robot.",
     "run": "Check a script, run it, watch and report.",
     "explain": "Explain an error, refusal or fault code.",
