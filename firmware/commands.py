@@ -137,9 +137,10 @@ class Commands:
         self._not_tripped()
 
     def _test(self, without: int, seq: int, calibrates: bool) -> None:
-        self._core.disarm()
-        self._core.channels.without_mask = without
-        self._core.control.selftest.begin(without)
+        core = self._core
+        core.disarm()
+        core.channels.without_mask = without
+        core.control.selftest.begin(without)
         self._arming, self._calibrates = seq, calibrates
 
     def _disarm(self, order, seq: int) -> None:
