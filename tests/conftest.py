@@ -1,5 +1,6 @@
 """Fixtures of all tests."""
 
+import json
 import weakref
 
 import pytest
@@ -60,3 +61,24 @@ def rig():
     rig = HilRig()
     yield rig
     rig.link.close()
+
+
+@pytest.fixture
+def faulty(tmp_path):
+    """Robots to which planned faults happen: faulty(("line-flip:5", 1000, 500), ("hang", 2000)), times in ms."""
+    rigs = []
+
+    def built(*faults, robot="sim:circular", seed=1):
+        keys = ("name", "at_ms", "for_ms")
+        tables = [
+            "".join(f"{key} = {json.dumps(value)}\n" for key, value in zip(keys, fault, strict=False))
+            for fault in faults
+        ]
+        path = tmp_path / f"faults{len(rigs)}.toml"
+        path.write_text(f"seed = {seed}\n" + "".join(f"[[fault]]\n{table}" for table in tables))
+        rigs.append(HilRig(f"{robot}{'&' if '?' in robot else '?'}faults={path}"))
+        return rigs[-1]
+
+    yield built
+    for rig in rigs:
+        rig.link.close()
