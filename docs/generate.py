@@ -12,6 +12,7 @@ from pathlib import Path
 
 import click
 
+from docs import meanings
 from hil_sim import faults
 from host.cli import main as softrig
 from host.gait.errors import ROWS
@@ -112,13 +113,14 @@ def protocol_page() -> str:
 
 def message_section(message: messages.Message) -> str:
     """Return one message with its fields."""
-    head = f"### 0x{message.number:02X} {message.name}\n{message.help}\n"
+    words = meanings.read()
+    head = f"### 0x{message.number:02X} {message.name}\n{words[message.name]}\n"
     if not message.fields:
         return head + "No payload.\n"
     rows, offset = [], 0
     for field in message.fields:
         kind, size = TYPES[field.letter]
-        rows.append((str(offset), kind, f"`{field.name}`", field.help))
+        rows.append((str(offset), kind, f"`{field.name}`", words[f"{message.name}.{field.name}"]))
         offset += size
     return head + "\n" + table(("offset", "type", "field", ""), rows)
 

@@ -5,7 +5,7 @@ Every text is one line that says what is wrong and what to do next.
 
 from __future__ import annotations
 
-from protocol import codes
+from protocol import causes, codes
 
 LOWER_BOUNDS = (codes.SUPPLY_LOW, codes.COIL_SHORT)  # their limit is what should have been reached
 NONE = 255  # channel number of an answer that is about no channel
@@ -60,7 +60,7 @@ class Refused(SoftrigError):
 
     def __init__(self, request: str, code: int, value: int = 0, limit: int = 0, coil: str | None = None) -> None:
         self.code, self.value, self.limit, self.coil = code, value, limit, coil
-        self.row = codes.row(code)
+        self.row = causes.row(code)
         where = f" (coil {coil})" if coil else ""
         super().__init__(f"{request}{where} refused: {_told(code, value, limit)}")
 
@@ -89,7 +89,7 @@ class RobotFault(SoftrigError):
 
     def __init__(self, code: int, value: int = 0, coil: str | None = None) -> None:
         self.code, self.value, self.coil = code, value, coil
-        self.row = codes.row(code)
+        self.row = causes.row(code)
         super().__init__(f"the robot tripped{f' (coil {coil})' if coil else ''}: {_told(code, value)}")
 
 
@@ -107,7 +107,7 @@ class Interrupted(SoftrigError):
 
 def _told(code: int, value: int, limit: int = 0) -> str:
     """Return `F05 A coil's estimated temperature is above its limit. 1123 0.1 C. Lower duty ...`."""
-    row = codes.row(code)
+    row = causes.row(code)
     if row is None:
         return f"code {code}, unknown to this version; update softrig"
     bound = "at least" if row.number in LOWER_BOUNDS else "at most"
@@ -115,7 +115,7 @@ def _told(code: int, value: int, limit: int = 0) -> str:
     return f"{row.name} {_cause(row, value)}{figures} {row.todo}"
 
 
-def _cause(row: codes.Code, value: int) -> str:
+def _cause(row: causes.Code, value: int) -> str:
     """Return the row's cause, and that of the fault behind it when a robot is latched."""
-    fault = codes.row(value) if row.number == codes.TRIPPED else None
+    fault = causes.row(value) if row.number == codes.TRIPPED else None
     return f"{row.cause[:-1]}: {fault.name} {fault.cause}" if fault else row.cause

@@ -18,7 +18,7 @@ from host.recording import Recording
 from host.records import Event, Telemetry
 from host.robot import ENDS
 from host.run import Ending
-from protocol import codes
+from protocol import causes
 
 ENERGY = "duty x (measured supply / (coil + wiring))^2 x coil, resistances of the profile"
 SEEN = {
@@ -98,7 +98,7 @@ def coils(recording: Recording, profile: Profile) -> dict[str, Fields]:
 
 def fault(event: Event, recording: Recording, compiled: Compiled) -> Fields:
     """Return a fault with its row of the table of codes and the line of the script that was running."""
-    row, step = codes.row(event.code), compiled.step(event.step)
+    row, step = causes.row(event.code), compiled.step(event.step)
     return {
         "code": row.name if row else str(event.code),
         "cause": row.cause if row else "unknown to this version",

@@ -20,7 +20,7 @@ from host.link import Link
 from host.profile import Profile
 from host.records import Event, Record, Status, Stopped, Telemetry
 from host.session import Answer, Session
-from protocol import codes, messages
+from protocol import causes, codes, messages
 
 PATIENCE_MS = 1500  # for the lease of a host that has gone
 AGAIN_MS = 250
@@ -330,7 +330,7 @@ class Robot:
         except (SoftrigError, KeyboardInterrupt) as error:
             return Interrupted(f"interrupted: stop was sent but not acknowledged ({error})")
         coils = f"coils {' '.join(stopped.coils)} were on and are off now" if stopped.coils else "no coil was on"
-        name = codes.row(stopped.code)
+        name = causes.row(stopped.code)
         return Interrupted(
             f"interrupted: stop acknowledged, {coils}; the robot is {stopped.state}"
             f"{f' ({name.name})' if name else ''}: `softrig clear` before the next run"

@@ -15,7 +15,7 @@ from host.log import LogWriter
 from host.recording import Recording, Scene
 from host.records import Event, Record, Telemetry
 from host.robot import Robot
-from protocol import codes, program
+from protocol import causes, codes, program
 
 TELEMETRY_MS = 50
 COOL_MS = 2 * TELEMETRY_MS  # after the end, so that the record ends with every coil off
@@ -148,5 +148,5 @@ def _result(event: Event) -> str:
 
 
 def _cause(event: Event) -> str:
-    row = codes.row(event.code)
+    row = causes.row(event.code)
     return f"{row.name} {row.cause} {row.todo}" if row else f"it was {event.event}"

@@ -1,8 +1,8 @@
 """The table of messages: the one place from which codec, reference page and dictionary are made.
 
 A message is a number, a name and its fields in wire order (little endian, no padding). A field's unit is the end of
-its name; its format is a struct letter, or `s` for the rest of the payload. The unit test vectors in `tests/` freeze
-the bytes.
+its name; its format is a struct letter, or `s` for the rest of the payload; what it means is the comment beside it,
+which the reference page prints and a board need not hold. The test vectors in `tests/` freeze the bytes.
 
     payload = FIRE.pack(coils=1, duty_permille=600, hold_ms=500)
     order = FIRE.unpack(payload)
@@ -42,22 +42,15 @@ SETTING_SOURCES = ("defaults", "stored", "damaged")
 DEFAULTS, STORED, DAMAGED = 0, 1, 2
 
 
-class Field:
-    """One value of a message: its name (the unit is its end), its struct letter and what it means."""
-
-    def __init__(self, name: str, letter: str, help: str) -> None:
-        self.name = name
-        self.letter = letter
-        self.help = help
+Field = namedtuple("Field", ("name", "letter"))  # one value of a message: its name, whose end is the unit; its type
 
 
 class Message:
     """One row of the table; packs and unpacks its payload, and refuses values that its fields cannot hold."""
 
-    def __init__(self, number: int, name: str, help: str, *fields) -> None:
+    def __init__(self, number: int, name: str, *fields) -> None:
         self.number = number
         self.name = name
-        self.help = help
         self.fields = fields
         self._open = bool(fields) and fields[-1].letter == "s"
         sized = fields[:-1] if self._open else fields
@@ -104,173 +97,168 @@ class Message:
 
 
 HELLO = Message(
-    0x01, "hello", "Opens a session; the answer is `identity`. Never disturbs a program that is running.",
-    Field("version", "B", "Protocol version of the host."),
-    Field("session", "I", "Number the host chose for this session."),
+    0x01, "hello",  # Opens a session; the answer is `identity`. Never disturbs a program that is running.
+    Field("version", "B"),  # Protocol version of the host.
+    Field("session", "I"),  # Number the host chose for this session.
 )  # fmt: skip
 IDENTITY = Message(
-    0x02, "identity", "Who the robot is; answers `hello`.",
-    Field("session", "I", "The session that said hello."),
-    Field("boot", "I", "Number of this start of the firmware; a reset may draw the same again, see uptime_ms."),
-    Field("uptime_ms", "I", "Time since this start: less than the host expects after a reset."),
-    Field("dictionary_crc", "I", "CRC-32 of the dictionary text: the seed of all other frames."),
-    Field("dictionary_bytes", "H", "Length of the dictionary text."),
-    Field("version", "B", "Protocol version of the robot."),
-    Field("state", "B", "State of the robot, see STATES."),
-    Field("role", "B", "1: this session may arm; 0: another session holds the lease."),
-    Field("firmware", "s", "Version of the firmware, text."),
+    0x02, "identity",  # Who the robot is; answers `hello`.
+    Field("session", "I"),  # The session that said hello.
+    Field("boot", "I"),  # Number of this start of the firmware; a reset may draw the same again, see uptime_ms.
+    Field("uptime_ms", "I"),  # Time since this start: less than the host expects after a reset.
+    Field("dictionary_crc", "I"),  # CRC-32 of the dictionary text: the seed of all other frames.
+    Field("dictionary_bytes", "H"),  # Length of the dictionary text.
+    Field("version", "B"),  # Protocol version of the robot.
+    Field("state", "B"),  # State of the robot, see STATES.
+    Field("role", "B"),  # 1: this session may arm; 0: another session holds the lease.
+    Field("firmware", "s"),  # Version of the firmware, text.
 )  # fmt: skip
 DICTIONARY = Message(
-    0x03, "dictionary", "Asks for a page of the dictionary text.",
-    Field("offset", "H", "First byte wanted."),
+    0x03, "dictionary",  # Asks for a page of the dictionary text.
+    Field("offset", "H"),  # First byte wanted.
 )  # fmt: skip
 DICTIONARY_PAGE = Message(
-    0x04, "dictionary_page", "A page of the dictionary text.",
-    Field("offset", "H", "First byte of this page."),
-    Field("text", "s", "The page; empty beyond the end."),
+    0x04, "dictionary_page",  # A page of the dictionary text.
+    Field("offset", "H"),  # First byte of this page.
+    Field("text", "s"),  # The page; empty beyond the end.
 )  # fmt: skip
 STOPPED = Message(
-    0x05, "stopped", "Answers the stop pattern once every coil is off.",
-    Field("state", "B", "State of the robot, see STATES."),
-    Field("code", "H", "Why it is stopped, see the table of codes."),
-    Field("coils", "I", "Coils that were on when the stop arrived."),
-    Field("now_ms", "I", "The robot's clock."),
+    0x05, "stopped",  # Answers the stop pattern once every coil is off.
+    Field("state", "B"),  # State of the robot, see STATES.
+    Field("code", "H"),  # Why it is stopped, see the table of codes.
+    Field("coils", "I"),  # Coils that were on when the stop arrived.
+    Field("now_ms", "I"),  # The robot's clock.
 )  # fmt: skip
 NAK = Message(
-    0x06, "nak", "An unseeded frame could not be served.",
-    Field("kind", "B", "Kind of the frame."),
-    Field("code", "H", "Why, see the table of codes."),
-    Field("version", "B", "Protocol version of the robot."),
+    0x06, "nak",  # An unseeded frame could not be served.
+    Field("kind", "B"),  # Kind of the frame.
+    Field("code", "H"),  # Why, see the table of codes.
+    Field("version", "B"),  # Protocol version of the robot.
 )  # fmt: skip
 
-ALIVE = Message(0x10, "alive", "Says only that the sender lives; carries its acknowledgement and renews the lease.")
+ALIVE = Message(0x10, "alive")  # Says only that the sender lives; carries its acknowledgement and renews the lease.
 ARM = Message(
-    0x11, "arm", "Takes the lease and allows orders until it runs out, once the self-test of every coil has passed.",
-    Field("session", "I", "The session that asks, as in its `hello`."),
-    Field("lease_ms", "H", "All coils off when nothing arrives for this long; 0 takes the robot's own."),
-    Field("without", "I", "Bit mask of coils known to be broken: not tested, and never driven."),
+    0x11, "arm",  # Takes the lease and allows orders until it runs out, once the self-test of every coil has passed.
+    Field("session", "I"),  # The session that asks, as in its `hello`.
+    Field("lease_ms", "H"),  # All coils off when nothing arrives for this long; 0 takes the robot's own.
+    Field("without", "I"),  # Bit mask of coils known to be broken: not tested, and never driven.
 )  # fmt: skip
-DISARM = Message(0x12, "disarm", "All coils off, lease returned.")
-CLEAR = Message(0x13, "clear", "Leaves the tripped state once its cause is gone.")
+DISARM = Message(0x12, "disarm")  # All coils off, lease returned.
+CLEAR = Message(0x13, "clear")  # Leaves the tripped state once its cause is gone.
 FIRE = Message(
-    0x14, "fire", "Heat coils for a limited time; the order carries its own end.",
-    Field("coils", "I", "Bit mask of channels in the order of the profile."),
-    Field("duty_permille", "H", "Share of the PWM period that the coils are on; 0 switches them off."),
-    Field("hold_ms", "H", "Off again after this long unless driven anew."),
+    0x14, "fire",  # Heat coils for a limited time; the order carries its own end.
+    Field("coils", "I"),  # Bit mask of channels in the order of the profile.
+    Field("duty_permille", "H"),  # Share of the PWM period that the coils are on; 0 switches them off.
+    Field("hold_ms", "H"),  # Off again after this long unless driven anew.
 )  # fmt: skip
-STATUS_REQUEST = Message(0x15, "status_request", "Asks for `status`.")
+STATUS_REQUEST = Message(0x15, "status_request")  # Asks for `status`.
 SUBSCRIBE = Message(
-    0x16, "subscribe", "Sets how often the robot sends `telemetry`.",
-    Field("period_ms", "H", "Between two records; 0 ends it."),
+    0x16, "subscribe",  # Sets how often the robot sends `telemetry`.
+    Field("period_ms", "H"),  # Between two records; 0 ends it.
 )  # fmt: skip
 FAULTS_REQUEST = Message(
-    0x17, "faults_request", "Asks for `faults`.",
-    Field("skip", "B", "How many of the newest are not wanted."),
+    0x17, "faults_request",  # Asks for `faults`.
+    Field("skip", "B"),  # How many of the newest are not wanted.
 )  # fmt: skip
-CLEAR_FAULTS = Message(0x1B, "clear_faults", "Forgets the faults that were kept; refused while the robot is armed.")
-SETTINGS_REQUEST = Message(0x19, "settings_request", "Asks for `settings`.")
+CLEAR_FAULTS = Message(0x1B, "clear_faults")  # Forgets the faults that were kept; refused while the robot is armed.
+SETTINGS_REQUEST = Message(0x19, "settings_request")  # Asks for `settings`.
 SET = Message(
-    0x1A, "set", "Changes a setting and keeps it; refused while the robot is armed.",
-    Field("setting", "B", "Which, see SETTINGS."),
-    Field("channel", "B", "The channel that it belongs to; 255: none."),
-    Field("value", "i", "Its value, in the unit that ends its name."),
+    0x1A, "set",  # Changes a setting and keeps it; refused while the robot is armed.
+    Field("setting", "B"),  # Which, see SETTINGS.
+    Field("channel", "B"),  # The channel that it belongs to; 255: none.
+    Field("value", "i"),  # Its value, in the unit that ends its name.
 )  # fmt: skip
-COILS_REQUEST = Message(0x18, "coils_request", "Asks for `coils`.")
+COILS_REQUEST = Message(0x18, "coils_request")  # Asks for `coils`.
 CALIBRATE = Message(
-    0x1C, "calibrate", "Keeps the resistance of every coil, cold and whole, as a self-test measures it.",
-    Field("session", "I", "The session that asks, as in its `hello`."),
-    Field("without", "I", "Bit mask of coils known to be broken: not tested, and what was kept of them stands."),
+    0x1C, "calibrate",  # Keeps the resistance of every coil, cold and whole, as a self-test measures it.
+    Field("session", "I"),  # The session that asks, as in its `hello`.
+    Field("without", "I"),  # Bit mask of coils known to be broken: not tested, and what was kept of them stands.
 )  # fmt: skip
 PROGRAM = Message(
-    0x20, "program", "Begins the upload of a program.",
-    Field("header", "s", "The program's header, see program.py."),
+    0x20, "program",  # Begins the upload of a program.
+    Field("header", "s"),  # The program's header, see program.py.
 )  # fmt: skip
 CODE = Message(
-    0x21, "code", "A piece of the program's code.",
-    Field("offset", "H", "Its first byte."),
-    Field("code", "s", "The piece."),
+    0x21, "code",  # A piece of the program's code.
+    Field("offset", "H"),  # Its first byte.
+    Field("code", "s"),  # The piece.
 )  # fmt: skip
-START = Message(0x22, "start", "Verifies the uploaded program and runs it.")
-CANCEL = Message(0x23, "cancel", "Ends the running program: all coils off, still armed.")
+START = Message(0x22, "start")  # Verifies the uploaded program and runs it.
+CANCEL = Message(0x23, "cancel")  # Ends the running program: all coils off, still armed.
 
 OK = Message(
-    0x40, "ok", "The request was taken.",
-    Field("request", "B", "Sequence number of the request."),
+    0x40, "ok",  # The request was taken.
+    Field("request", "B"),  # Sequence number of the request.
 )  # fmt: skip
 REFUSED = Message(
-    0x41, "refused", "The request was not taken; nothing changed.",
-    Field("request", "B", "Sequence number of the request."),
-    Field("code", "H", "Why, see the table of codes."),
-    Field("channel", "B", "The channel it is about, 255: none."),
-    Field("value", "i", "What was asked, in the unit of the limit."),
-    Field("limit", "i", "What is allowed."),
+    0x41, "refused",  # The request was not taken; nothing changed.
+    Field("request", "B"),  # Sequence number of the request.
+    Field("code", "H"),  # Why, see the table of codes.
+    Field("channel", "B"),  # The channel it is about, 255: none.
+    Field("value", "i"),  # What was asked, in the unit of the limit.
+    Field("limit", "i"),  # What is allowed.
 )  # fmt: skip
 STATUS = Message(
-    0x42, "status", "Answers `status_request`.",
-    Field("request", "B", "Sequence number of the request."),
-    Field("state", "B", "State of the robot, see STATES."),
-    Field("code", "H", "Last fault, 0: none since boot."),
-    Field("uptime_ms", "I", "Time since boot."),
-    Field("lease_ms", "H", "What is left of the lease, 0: none."),
-    Field("step", "H", "Step of the program, 0: none."),
-    Field("coils", "I", "Coils that are on."),
-    Field("supply_mv", "H", "Supply voltage at the coils' rail."),
-    Field("current_ma", "H", "Supply current."),
-    Field("board_decidegc", "h", "Temperature of the board."),
-    Field("roll_decideg", "h", "Lean to the right; 0 when the attitude is not known."),
-    Field("pitch_decideg", "h", "Turn forward since upright, -180 to 180 deg; 0 when the attitude is not known."),
-    Field("down", "B", "Channel of the coil whose direction is nearest to down; 255: the attitude is not known."),
-    Field("dropped", "H", "Damaged frames since boot, modulo 65536."),
-    Field("overruns", "H", "Control steps that came late, modulo 65536."),
+    0x42, "status",  # Answers `status_request`.
+    Field("request", "B"),  # Sequence number of the request.
+    Field("state", "B"),  # State of the robot, see STATES.
+    Field("code", "H"),  # Last fault, 0: none since boot.
+    Field("uptime_ms", "I"),  # Time since boot.
+    Field("lease_ms", "H"),  # What is left of the lease, 0: none.
+    Field("step", "H"),  # Step of the program, 0: none.
+    Field("coils", "I"),  # Coils that are on.
+    Field("supply_mv", "H"),  # Supply voltage at the coils' rail.
+    Field("current_ma", "H"),  # Supply current.
+    Field("board_decidegc", "h"),  # Temperature of the board.
+    Field("roll_decideg", "h"),  # Lean to the right; 0 when the attitude is not known.
+    Field("pitch_decideg", "h"),  # Turn forward since upright, -180 to 180 deg; 0 when the attitude is not known.
+    Field("down", "B"),  # Channel of the coil whose direction is nearest to down; 255: the attitude is not known.
+    Field("dropped", "H"),  # Damaged frames since boot, modulo 65536.
+    Field("overruns", "H"),  # Control steps that came late, modulo 65536.
 )  # fmt: skip
 FAULTS = Message(
-    0x43, "faults", "Answers `faults_request`: a page of the faults that were kept over resets and power cuts.",
-    Field("request", "B", "Sequence number of the request."),
-    Field("start", "I", "Number of this start of the firmware in the records."),
-    Field("count", "B", "How many faults there are."),
-    Field(
-        "records", "s", "Newest first: start u32, now_ms u32, code u16, channel u8 [255: none], value i32, state u8, "
-        "cause of that start u8 [1: power-on, 3: reset].",
-    ),
+    0x43, "faults",  # Answers `faults_request`: a page of the faults that were kept over resets and power cuts.
+    Field("request", "B"),  # Sequence number of the request.
+    Field("start", "I"),  # Number of this start of the firmware in the records.
+    Field("count", "B"),  # How many faults there are.
+    Field("records", "s"),  # Newest first: start u32, now_ms u32, code u16, channel u8 [255: none], value i32,
+    # state u8, cause of that start u8 [1: power-on, 3: reset].
 )  # fmt: skip
 SETTINGS = Message(
-    0x44, "settings", "Answers `settings_request`.",
-    Field("request", "B", "Sequence number of the request."),
-    Field("source", "B", "0: the defaults, nothing is stored; 1: stored; 2: the defaults, what was stored is damaged."),
-    Field("node", "B", "Setting 0: the robot's number on a shared bus."),
-    Field("board_offset_decidegc", "h", "Setting 1: added to what the board's thermometer reads."),
-    Field("resistances", "s", "Setting 2: per channel the cold coil's resistance u16 [mohm], 0: as in the profile."),
+    0x44, "settings",  # Answers `settings_request`.
+    Field("request", "B"),  # Sequence number of the request.
+    Field("source", "B"),  # 0: the defaults, nothing is stored; 1: stored; 2: the defaults, what was stored is damaged.
+    Field("node", "B"),  # Setting 0: the robot's number on a shared bus.
+    Field("board_offset_decidegc", "h"),  # Setting 1: added to what the board's thermometer reads.
+    Field("resistances", "s"),  # Setting 2: per channel the cold coil's resistance u16 [mohm], 0: as in the profile.
 )  # fmt: skip
 COILS = Message(
-    0x45, "coils", "Answers `coils_request`: what the resistance of each coil, as measured last, says of it.",
-    Field("request", "B", "Sequence number of the request."),
-    Field(
-        "channels", "s",
-        "Per channel: resistance u16 [10 mohm; 65535: more], martensite u16 [permille; 65535: not known],"
-        " temperature at least i16 and at most i16 [0.1 C; -32768 and 32767: no bound].",
-    ),
+    0x45, "coils",  # Answers `coils_request`: what the resistance of each coil, as measured last, says of it.
+    Field("request", "B"),  # Sequence number of the request.
+    Field("channels", "s"),  # Per channel: resistance u16 [10 mohm; 65535: more], martensite u16 [permille; 65535: not
+    # known], temperature at least i16 and at most i16 [0.1 C; -32768 and 32767: no bound].
 )  # fmt: skip
 TELEMETRY = Message(
-    0x50, "telemetry", "State of the robot, sent at the subscribed period and not repeated when lost.",
-    Field("now_ms", "I", "The robot's clock."),
-    Field("state", "B", "State of the robot, see STATES."),
-    Field("step", "H", "Step of the program, 0: none."),
-    Field("supply_mv", "H", "Supply voltage at the coils' rail."),
-    Field("current_ma", "H", "Supply current."),
-    Field("board_decidegc", "h", "Temperature of the board."),
-    Field("roll_decideg", "h", "Lean to the right; 0 when the attitude is not known."),
-    Field("pitch_decideg", "h", "Turn forward since upright, -180 to 180 deg; 0 when the attitude is not known."),
-    Field("down", "B", "Channel of the coil whose direction is nearest to down; 255: the attitude is not known."),
-    Field("channels", "s", "Per channel: duty u16 [permille], estimated temperature i16 [0.1 C]."),
+    0x50, "telemetry",  # State of the robot, sent at the subscribed period and not repeated when lost.
+    Field("now_ms", "I"),  # The robot's clock.
+    Field("state", "B"),  # State of the robot, see STATES.
+    Field("step", "H"),  # Step of the program, 0: none.
+    Field("supply_mv", "H"),  # Supply voltage at the coils' rail.
+    Field("current_ma", "H"),  # Supply current.
+    Field("board_decidegc", "h"),  # Temperature of the board.
+    Field("roll_decideg", "h"),  # Lean to the right; 0 when the attitude is not known.
+    Field("pitch_decideg", "h"),  # Turn forward since upright, -180 to 180 deg; 0 when the attitude is not known.
+    Field("down", "B"),  # Channel of the coil whose direction is nearest to down; 255: the attitude is not known.
+    Field("channels", "s"),  # Per channel: duty u16 [permille], estimated temperature i16 [0.1 C].
 )  # fmt: skip
 EVENT = Message(
-    0x51, "event", "Something happened; sent once and surely.",
-    Field("event", "B", "What, see EVENTS."),
-    Field("code", "H", "Why, see the table of codes; 0: in order."),
-    Field("step", "H", "Step of the program, 0: none."),
-    Field("channel", "B", "The channel it is about, 255: none."),
-    Field("value", "i", "What was measured, in the unit of the code's limit."),
-    Field("now_ms", "I", "The robot's clock."),
+    0x51, "event",  # Something happened; sent once and surely.
+    Field("event", "B"),  # What, see EVENTS.
+    Field("code", "H"),  # Why, see the table of codes; 0: in order.
+    Field("step", "H"),  # Step of the program, 0: none.
+    Field("channel", "B"),  # The channel it is about, 255: none.
+    Field("value", "i"),  # What was measured, in the unit of the code's limit.
+    Field("now_ms", "I"),  # The robot's clock.
 )  # fmt: skip
 
 MESSAGES = (

@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import pytest
 
 from host.cli import main
-from protocol import codes, messages
+from protocol import causes, codes, messages
 from tests.fake_robot import PROFILE, FakeLine, FakeRobot
 
 LIMITS = json.loads(PROFILE)["coil"]
@@ -313,7 +313,7 @@ def test_a_lost_link_leaves_a_complete_log(softrig, line, script, tmp_path):
 def test_every_code_of_both_tables_is_explained(softrig):
     listed = softrig("explain").out
 
-    assert all(f"\n{row.name}  " in listed for row in codes.CODES)
+    assert all(f"\n{row.name}  " in listed for row in causes.CODES)
     assert softrig("explain", "f05").out.splitlines()[1] == (
         "  cause      A coil's estimated temperature is above its limit."
     )

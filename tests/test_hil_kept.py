@@ -3,7 +3,7 @@
 import pytest
 
 from host.errors import LinkLost, Refused
-from protocol import codes
+from protocol import causes
 from tests.hil_rig import HilRig
 
 WRITE_OPERATIONS = 3  # of one record: truncate, write, close
@@ -25,7 +25,7 @@ def change_all(rig, coils, mohm):
 
 
 def named(faults):
-    return [codes.row(fault.code).name for fault in faults]
+    return [causes.row(fault.code).name for fault in faults]
 
 
 def test_a_fresh_robot_has_no_faults_and_the_defaults(rig):
@@ -44,7 +44,7 @@ def test_a_fault_is_kept_with_its_coil_its_figure_and_its_state(rig):
 
     (fault,) = rig.robot.faults()
 
-    assert (codes.row(fault.code).name, fault.coil, fault.state, fault.start) == ("F02", None, "armed", 1)
+    assert (causes.row(fault.code).name, fault.coil, fault.state, fault.start) == ("F02", None, "armed", 1)
     assert fault.cause == "power-on"
 
 

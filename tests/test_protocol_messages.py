@@ -2,7 +2,7 @@
 
 import pytest
 
-from protocol import codes, messages
+from protocol import causes, codes, messages
 
 
 def test_every_number_and_name_stands_once():
@@ -43,7 +43,7 @@ def test_the_dictionary_is_the_table_then_a_blank_line_then_the_profile():
 
 
 def test_every_code_says_cause_deed_and_remedy_under_a_number_of_its_own():
-    assert len({row.number for row in codes.CODES}) == len({row.name for row in codes.CODES}) == len(codes.CODES)
-    assert all(row.cause and row.did and row.todo for row in codes.CODES)
-    assert codes.named("f05").number == codes.OVER_TEMPERATURE
-    assert codes.row(codes.STOP).name == "F01"
+    assert len({row.number for row in causes.CODES}) == len({row.name for row in causes.CODES}) == len(causes.CODES)
+    assert all(row.cause and row.did and row.todo for row in causes.CODES)
+    assert causes.named("f05").number == codes.OVER_TEMPERATURE
+    assert causes.row(codes.STOP).name == "F01"

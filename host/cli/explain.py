@@ -8,7 +8,7 @@ from host.cli.options import json_option
 from host.cli.output import emit
 from host.errors import BadRequest
 from host.gait import errors
-from protocol import codes
+from protocol import causes
 
 
 @click.command("explain")
@@ -36,6 +36,6 @@ def _rows() -> dict[str, dict[str, str]]:
     scripts = [{"code": row.code, "cause": row.cause, "todo": row.todo} for row in errors.ROWS]
     robots = [
         {"code": row.name, "cause": row.cause, "did": row.did, "todo": row.todo, "unit": row.unit}
-        for row in codes.CODES
+        for row in causes.CODES
     ]
     return {row["code"]: row for row in [*scripts, *robots]}

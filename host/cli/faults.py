@@ -11,7 +11,7 @@ from host.cli.connection import connected
 from host.cli.options import json_option, robot_option
 from host.cli.output import emit
 from host.kept import Fault
-from protocol import codes
+from protocol import causes
 
 
 @click.command("faults")
@@ -31,7 +31,7 @@ def command(robot: str, as_json: bool, clear: bool) -> None:
 
 
 def _fields(fault: Fault) -> dict[str, object]:
-    row = codes.row(fault.code)
+    row = causes.row(fault.code)
     return {**asdict(fault), "code": row.name if row else fault.code, "unit": row.unit if row else ""}
 
 
@@ -39,7 +39,7 @@ def _lines(faults: list[Fault], cleared: bool) -> Iterator[str]:
     if not faults:
         yield "no faults are kept"
     for fault in faults:
-        row = codes.row(fault.code)
+        row = causes.row(fault.code)
         what = f"{row.name} {row.cause}" if row else f"code {fault.code}, unknown to this version"
         where = f", coil {fault.coil}" if fault.coil else ""
         figure = f" ({fault.value} {row.unit})" if row and row.unit else ""

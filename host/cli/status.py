@@ -11,7 +11,7 @@ from host.cli.connection import connected
 from host.cli.options import json_option, robot_option
 from host.cli.output import emit
 from host.records import Status
-from protocol import codes
+from protocol import causes
 
 
 @click.command("status")
@@ -26,13 +26,13 @@ def command(robot: str, as_json: bool) -> None:
 
 
 def _fields(status: Status, line: dict[str, int | None]) -> dict[str, object]:
-    row = codes.row(status.code)
+    row = causes.row(status.code)
     return {**asdict(status), "code": row.name if row else None, "link": line}
 
 
 def _lines(status: Status, line: dict[str, int | None]) -> Iterator[str]:
     yield f"{status.state}, coils on: {' '.join(status.coils) or 'none'}"
-    row = codes.row(status.code)
+    row = causes.row(status.code)
     if row:
         yield f"  last fault  {row.name} {row.cause} {row.todo}"
     yield f"  supply      {status.supply_mv / 1000:.2f} V, {status.current_ma} mA; board {status.board_degc:.1f} C"
