@@ -12,6 +12,7 @@ from firmware.greetings import Greetings
 from firmware.player import FINISHED, TIMED_OUT
 from firmware.records import Records
 from firmware.reports import Reports
+from firmware.tasks import CONTROL, RECEIVE, Tasks
 from protocol import codes, messages
 from protocol.frames import UNSEEDED_BELOW, StopFinder
 from protocol.link import Link
@@ -45,6 +46,7 @@ class Core:
         self.greetings = Greetings(self)
         self.link = Link(crc32(self.dictionary))
         self.reports = Reports(self)
+        self.tasks = Tasks()
         self._stop = StopFinder()
         self._armed_ms = 0
 
@@ -57,9 +59,11 @@ class Core:
         self.records.keep()
         if data:
             self._receive(data)
+        self.tasks.report(RECEIVE)
         self._lease()
         self.commands.go_on()
         code = self.control.tried(now_ms, self.state)
+        self.tasks.report(CONTROL)
         if code:
             self.trip(code, self.guard.channel, self.guard.value)
         self._end_program()

@@ -7,7 +7,9 @@ from machine import WDT_RESET, reset, reset_cause
 
 from firmware.boards import pico
 from firmware.core import Core
+from firmware.heap import Heap
 from firmware.profile import Profile
+from firmware.tasks import SEND
 from firmware.trial import Trial
 
 STEP_MS = 5
@@ -33,11 +35,16 @@ def loop(board: pico.Board, core: Core, trial: Trial) -> None:
     now_ms = 0
     last = time.ticks_ms()
     due = last
+    heap = Heap()
     while not (core.may_restart() or trial.over(now_ms, core)):
         board.write(core.step(now_ms, board.read(), board.room()))
-        board.feed()
+        core.tasks.report(SEND)
+        if core.tasks.complete():
+            board.feed()
         due = time.ticks_add(due, STEP_MS)
         left = time.ticks_diff(due, time.ticks_ms())
+        if heap.collect(left):
+            left = time.ticks_diff(due, time.ticks_ms())
         if left > 0:
             time.sleep_ms(left)
         else:

@@ -1,0 +1,76 @@
+"""What keeps the super-loop honest: the watchdog's reports and the collecting of garbage."""
+
+import pytest
+
+from firmware import heap
+from firmware.tasks import CONTROL, RECEIVE, SEND, Tasks
+from tests.firmware_bench import Rig
+
+
+@pytest.fixture
+def collected(monkeypatch):
+    """Return what the heap did, in place of the interpreter's own collector."""
+    done = []
+
+    class Collector:
+        collect = staticmethod(lambda: done.append("collect"))
+        disable = staticmethod(lambda: done.append("disable"))
+
+    monkeypatch.setattr(heap, "gc", Collector)
+    return done
+
+
+@pytest.mark.parametrize("silent", [RECEIVE, CONTROL, SEND])
+def test_the_watchdog_starves_while_one_task_is_silent(silent):
+    tasks = Tasks()
+
+    for _ in range(10):
+        for task in (RECEIVE, CONTROL, SEND):
+            if task != silent:
+                tasks.report(task)
+        assert not tasks.complete()
+
+    tasks.report(silent)
+    assert tasks.complete()
+
+
+def test_each_period_needs_its_own_reports():
+    tasks = Tasks()
+    tasks.report(RECEIVE | CONTROL | SEND)
+
+    assert tasks.complete()
+    assert not tasks.complete()
+
+
+def test_a_step_of_the_core_reports_for_receiving_and_control_and_leaves_sending_to_the_loop():
+    rig = Rig()
+    rig.run(5)
+
+    assert not rig.core.tasks.complete()
+    rig.core.tasks.report(SEND)
+    assert rig.core.tasks.complete()
+
+
+def test_the_interpreter_does_not_collect_by_itself(collected):
+    heap.Heap()
+
+    assert collected == ["collect", "disable"]
+
+
+def test_garbage_is_collected_where_a_step_has_time_left(collected):
+    kept = heap.Heap()
+    collected.clear()
+
+    ran = [kept.collect(4) for _ in range(24)]
+
+    assert [i for i, did in enumerate(ran) if did] == [7, 15, 23]
+    assert collected == ["collect"] * 3
+
+
+def test_garbage_waits_for_a_step_with_time_but_not_for_ever(collected):
+    kept = heap.Heap()
+
+    ran = [kept.collect(1) for _ in range(20)]
+    assert not any(ran)
+    assert kept.collect(3)
+    assert [kept.collect(1) for _ in range(32)].index(True) == 31
