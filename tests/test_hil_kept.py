@@ -218,3 +218,18 @@ def refused(order):
     with pytest.raises(Refused) as caught:
         order()
     return caught.value.row.name, caught.value.coil
+
+
+def test_the_slowest_erase_of_the_sheet_does_not_reset_the_robot(monkeypatch):
+    monkeypatch.setattr("hil_sim.devices.flash.ERASE_US", 400_000)
+    rig = HilRig("sim:circular?body=still")
+    rig.happens("estop-open")
+    rig.run_alone(seconds=1)
+    assert rig.bench.world.resets == 0
+    assert named(rig.robot.faults()) == ["F02"]
+
+    rig.happens("hang")
+    rig.run_alone(seconds=0.25)
+
+    assert rig.bench.world.resets == 1  # the watchdog has its short period again
+    rig.link.close()

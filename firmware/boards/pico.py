@@ -15,6 +15,7 @@ from firmware.drivers.ntc import decidegc
 from firmware.drivers.pca9685 import Pca9685
 
 WATCHDOG_MS = 200
+WRITING_MS = 2000  # the flash erases a sector in 45 ms, at worst in 400 ms (W25Q16JV), and a file may take two
 BAUD = 115_200
 BUFFER_BYTES = 512
 
@@ -89,16 +90,23 @@ class Board:
             self._uart.write(data)
 
     def open(self, path: str, mode: str):
-        """Return a file on the flash."""
+        """Return a file on the flash; the next period of the watchdog lasts as long as the slowest writing."""
+        if mode == "wb":
+            self._watchdog = WDT(timeout=WRITING_MS)
+            self._writing = True
         return open(path, mode)
 
     def watch(self) -> None:
         """Give the watchdog its short period."""
+        self._writing = False
         self._watchdog = WDT(timeout=WATCHDOG_MS)
 
     def feed(self) -> None:
         """Keep the watchdog quiet for another period."""
-        self._watchdog.feed()
+        if self._writing:
+            self.watch()
+        else:
+            self._watchdog.feed()
 
 
 def boot_number() -> int:
