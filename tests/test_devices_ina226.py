@@ -275,3 +275,200 @@ def test_reading_the_flags_does_not_silence_an_alert_that_is_not_latched(rig):
     assert rig.get(0x06) & 0x10
 
     assert rig.chip.alert_level() == 0
+
+
+class Pulsed:
+    """A shunt voltage that is on for a share of each period, as under PWM; the bus stays at 2 V."""
+
+    def __init__(self, volts: float, duty: float, period_us: float) -> None:
+        self.volts, self.duty, self.period_us = volts, duty, period_us
+
+    def steady_v(self):
+        return None
+
+    def integrals_vus(self, begun_us, from_us, until_us, shunt_us, bus_us):
+        turn_us = shunt_us + bus_us
+        shunt = bus = 0
+        for us in range(from_us, until_us):
+            if (us - begun_us) % turn_us < shunt_us:
+                shunt += us % self.period_us < self.duty * self.period_us
+            else:
+                bus += 1
+        return shunt * self.volts, bus * 2.0
+
+
+def pulsed(volts: float = 0.01, duty: float = 0.25, period_us: float = 656.0) -> Rig:
+    rig = Rig()
+    rig.chip._source = Pulsed(volts, duty, period_us)
+    return rig
+
+
+def test_a_short_conversion_of_a_pulsed_current_aliases():
+    rig = pulsed()
+    rig.set(0x00, 0x4007 | 1 << 6 | 1 << 3)  # 204 us of both, no averages: less than one period of the PWM
+    seen = set()
+    for _ in range(40):
+        rig.wait_us(408)
+        seen.add(rig.get(0x01))
+
+    assert min(seen) == 0
+    assert max(seen) > 3000  # of 4000 bits while it is on, 1000 on the average
+
+
+def test_averages_over_many_phases_of_the_pwm_come_near_the_mean():
+    rig = pulsed()
+    rig.set(0x00, 0x42AF)
+    rig.wait_us(9_792)
+
+    assert rig.get(0x01) == pytest.approx(1000, abs=20)
+
+
+def test_the_limit_is_held_against_each_conversion_and_not_against_the_average(rig):
+    rig.set(0x00, 0x4200 | 0x127)  # 4 averages of 1100 us each
+    rig.set(0x07, 3000)
+    rig.set(0x06, 0x8001)
+    rig.wait_us(2200)
+    rig.put(0.01, 2.0)  # 4000 bits during the second of four shunt conversions
+    rig.wait_us(1099)
+    assert rig.chip.alert_level() == 1
+
+    rig.wait_us(1)
+    rig.put(0.0, 2.0)
+    assert rig.chip.alert_level() == 0
+    rig.wait_us(8800 - 3300)
+
+    assert rig.get(0x01) == 1000
+    assert rig.chip.alert_level() == 0
+
+
+def test_a_bus_limit_is_held_against_each_conversion_of_the_bus(rig):
+    rig.set(0x00, 0x4200 | 0x127)
+    rig.set(0x07, 1000)
+    rig.set(0x06, 0x1000)
+    rig.put(0.0, 2.0)
+    rig.wait_us(2200)
+    assert rig.chip.alert_level() == 1
+
+    rig.put(0.0, 1.0)
+    rig.wait_us(2199)
+    assert rig.chip.alert_level() == 1
+    rig.wait_us(1)
+
+    assert rig.chip.alert_level() == 0
+
+
+def test_a_limit_that_is_set_within_a_turn_is_held_against_the_next(rig):
+    rig.put(0.01, 2.0)
+    rig.wait_us(100)
+
+    rig.set(0x07, 3000)
+    rig.set(0x06, 0x8000)
+    rig.wait_us(1000)
+    assert rig.chip.alert_level() == 1
+    rig.wait_us(2200)
+
+    assert rig.chip.alert_level() == 0
+
+
+def test_the_alert_is_told_without_anybody_asking():
+    told = []
+    rig = Rig()
+    rig.chip = Ina226(0x40, rig.clock, rig.source, lambda: told.append(rig.clock.now_us))
+    rig.bus = Bus([rig.chip])
+    rig.set(0x07, 3000)
+    rig.set(0x06, 0x8000)
+    rig.put(0.01, 2.0)
+
+    rig.wait_us(3000)
+    rig.put(0.0, 2.0)
+    rig.wait_us(3000)
+
+    assert told == [1100, 3300]  # the second conversion still saw 2909 bits
+
+
+def test_of_two_functions_the_higher_bit_is_watched(rig):
+    rig.set(0x07, 3000)
+    rig.set(0x06, 0xC000)  # over and under
+    rig.wait_us(2200)
+
+    assert rig.chip.alert_level() == 1  # 0 is under the limit, but over is what counts
+
+
+def test_power_is_watched_too(rig):
+    rig.set(0x07, 319)
+    rig.set(0x06, 0x0800)
+    rig.put(0.01, 2.0)
+
+    rig.wait_us(2200)
+
+    assert rig.get(0x03) == 320
+    assert rig.chip.alert_level() == 0
+
+
+def test_the_alert_pin_may_tell_a_finished_conversion(rig):
+    rig.set(0x06, 0x0400)
+    rig.wait_us(2199)
+    assert rig.chip.alert_level() == 1
+    rig.wait_us(1)
+    assert rig.chip.alert_level() == 0
+
+    assert rig.get(0x06) & 0x18 == 0x08  # ready, and no alert function
+
+    assert rig.chip.alert_level() == 1
+
+
+def test_reading_the_flags_leaves_an_alert_that_is_not_latched_beside_the_ready_flag(rig):
+    rig.set(0x07, 3000)
+    rig.set(0x06, 0x8400)
+    rig.put(0.01, 2.0)
+    rig.wait_us(2200)
+
+    assert rig.get(0x06) & 0x18 == 0x18
+
+    assert rig.get(0x06) & 0x18 == 0x10
+
+
+def test_configuring_clears_the_ready_flag_unless_it_is_for_power_down(rig):
+    rig.wait_us(2200)
+    rig.set(0x00, 0x4120)
+    assert rig.get(0x06) & 0x08
+    rig.set(0x00, 0x4127)
+    rig.wait_us(2200)
+
+    rig.set(0x00, 0x4127)
+
+    assert not rig.get(0x06) & 0x08
+
+
+def test_a_current_beyond_the_register_sets_the_overflow_flag(rig):
+    rig.set(0x05, 0x7FFF)
+    rig.put(0.01, 2.0)
+    rig.wait_us(2200)
+
+    assert rig.get(0x04) == 0x7FFF
+    assert rig.get(0x06) & 0x04
+
+
+def test_a_brown_out_clears_calibration_limit_and_alert(rig):
+    rig.set(0x07, 3000)
+    rig.set(0x06, 0x8001)
+    rig.put(0.01, 2.0)
+    rig.wait_us(2200)
+    assert rig.chip.alert_level() == 0
+
+    rig.chip.reset()
+    rig.wait_us(4400)
+
+    assert [rig.get(register) for register in (0x00, 0x04, 0x05, 0x07)] == [0x4127, 0, 0, 0]
+    assert rig.get(0x01) == 4000
+    assert rig.chip.alert_level() == 1
+
+
+def test_each_register_keeps_its_own_bits(rig):
+    for register, value, kept in ((0x00, 0x7FFF, 0x4FFF), (0x05, 0xFFFF, 0x7FFF), (0x07, 0xFFFF, 0xFFFF)):
+        rig.set(register, value)
+        assert rig.get(register) == kept
+    for register in (0x01, 0x02, 0x03, 0x04, 0xFE, 0xFF):
+        before = rig.get(register)
+        rig.set(register, before ^ 0xFFFF)
+        assert rig.get(register) == before

@@ -1,12 +1,21 @@
 """INA226: current and voltage of the common supply behind 16-bit registers, as the TI data sheet describes them.
 
+Texas Instruments SBOS547 (June 2011) and SBOS547B (September 2024): registers and values after reset (table 7-1), order
+of conversions and averages (6.3.1, figure 6-1), current = shunt * calibration / 2048 (equation 3), bits of 2.5 uV,
+1.25 mV and 25 current bits for power; Linux has the same numbers (hwmon/ina2xx.c: shunt_div 400, 2048, 1250, 25;
+iio/adc/ina2xx-adc.c: 0.00512). The limit is held against every single conversion and not against the average: figure
+19 of the 2011 sheet as TI explains it (e2e.ti.com, thread 856374). So a pulsed current may alert while its mean is
+below the limit.
+
 Conversions run by themselves at the configured times and averages, and each result is the mean of its own window. No
 event is needed for that: the chip works out what it would have converted when it is next asked, and once more
-(`before_change`) before the supply changes. Only while a limit is watched does each conversion end with an event, as
+(`before_change`) before the supply changes. Only while something is watched does a conversion end with an event, as
 the alert pin acts without being read. Conversions and PWM are not synchronous, so a short conversion of a pulsed
 current aliases, as on the real board.
 
-ASSUMED: with averaging, shunt and bus conversions alternate; results round to the nearest bit.
+DEVIATION: power is the product of the averages, where the chip averages products; nothing here reads it. ASSUMED: a
+turn is a shunt and then a bus conversion; results round to the nearest bit, current and power towards zero; a limit
+set within a turn is held against the next one first; an alert that is not latched ends with its function.
 """
 
 from collections.abc import Callable
@@ -17,6 +26,7 @@ from hil_sim.clock import Clock, Event
 CONFIG, SHUNT, BUS, POWER, CURRENT, CALIBRATION, MASK, LIMIT, MAKER_ID, DIE_ID = (*range(8), 0xFE, 0xFF)
 RESET = 0x8000
 SHUNT_OVER, SHUNT_UNDER, BUS_OVER, BUS_UNDER, POWER_OVER, READY_ALERT = 0x8000, 0x4000, 0x2000, 0x1000, 0x800, 0x400
+OF_SHUNT, LIMITS, WATCHED = 0xC000, 0xF800, 0xFC00
 ALERT_FLAG, READY_FLAG, OVERFLOW_FLAG, ALERT_HIGH, LATCH = 0x10, 0x08, 0x04, 0x02, 0x01
 SHUNT_LSB_V = 2.5e-6
 BUS_LSB_V = 1.25e-3
@@ -58,7 +68,6 @@ class Ina226:
         """Return to the power-on state: calibration 0, so current and power read 0 until it is written."""
         self.registers = dict.fromkeys(range(8), 0) | {CONFIG: 0x4127, MAKER_ID: 0x5449, DIE_ID: 0x2260}
         self._pointer = 0
-        self._asserted = False
         self._begin()
         self._tell()
 
@@ -69,12 +78,14 @@ class Ina226:
             self._repeat(now_us)
             return
         while self._cycle_us and now_us - self._begun_us >= self._cycle_us:
+            self._compare_until(self._begun_us + self._cycle_us)
             self._integrate(self._begun_us + self._cycle_us)
             self._finish()
             if self._settled:
                 self._repeat(now_us)
                 return
             self._skip(now_us)
+        self._compare_until(now_us)
 
     def before_change(self) -> None:
         """Convert up to now with what has been on the inputs; to be called before the source changes."""
@@ -119,24 +130,35 @@ class Ina226:
             self.reset()
         elif register == CONFIG:
             self.registers[CONFIG] = value & 0x0FFF | 0x4000
-            self.registers[MASK] &= ~READY_FLAG
+            if value & 3:  # power-down leaves it
+                self.registers[MASK] &= ~READY_FLAG
             self._begin()
         elif register == CALIBRATION:
             self.registers[CALIBRATION] = value & 0x7FFF
         elif register == MASK:
-            flags = ALERT_FLAG | READY_FLAG | OVERFLOW_FLAG
-            self.registers[MASK] = value & 0xFC03 | self.registers[MASK] & flags
+            self._store_mask(value)
         elif register == LIMIT:
             self.registers[LIMIT] = value
 
+    def _store_mask(self, value: int) -> None:
+        """Take what is to be watched; an alert stays if it is latched, or its function is."""
+        old = self.registers[MASK]
+        kept = READY_FLAG | OVERFLOW_FLAG | (ALERT_FLAG if value & (LIMITS | LATCH) else 0)
+        self.registers[MASK] = value & (WATCHED | ALERT_HIGH | LATCH) | old & kept
+        if not old & LIMITS and self._cycle_us:
+            self._integrate(self._clock.now_us)
+            self._turn_shunt = self._turn_bus = 0.0
+            self._turn_known = self._seen_us == self._begun_us
+
     def _acknowledge(self) -> None:
         self.registers[MASK] &= ~READY_FLAG
-        if self.registers[MASK] & (LATCH | READY_ALERT):
+        if self.registers[MASK] & LATCH:
             self.registers[MASK] &= ~ALERT_FLAG
-            self._asserted = False
 
     def _pin(self) -> int:
-        return int(self._asserted == bool(self.registers[MASK] & ALERT_HIGH))
+        mask = self.registers[MASK]
+        asserted = mask & ALERT_FLAG or (mask & READY_ALERT and mask & READY_FLAG)
+        return int(bool(asserted) == bool(mask & ALERT_HIGH))
 
     def _tell(self) -> None:
         if self._level != self._pin():
@@ -146,8 +168,15 @@ class Ina226:
 
     def _watch(self) -> None:
         """See to it that a conversion that is watched is looked at when it ends."""
-        if self._look_at is None and self._cycle_us and self.registers[MASK] & 0xFC00:
-            self._look_at = self._clock.at(self._begun_us + self._cycle_us, self._look)
+        watched = self.registers[MASK] & WATCHED
+        if self._look_at is not None or not self._cycle_us or not watched:
+            return
+        due_us = self._begun_us + self._cycle_us
+        if watched & LIMITS:
+            due_us = self._conversion_end()
+            if watched & OF_SHUNT and (due_us - self._begun_us) % self._turn_us != self._shunt_us % self._turn_us:
+                due_us += self._shunt_us
+        self._look_at = self._clock.at(due_us, self._look)
 
     def _look(self) -> None:
         self._look_at = None
@@ -161,15 +190,17 @@ class Ina226:
         self._averages = AVERAGES[config >> 9 & 7]
         self._shunt_us = CONVERSION_US[config >> 3 & 7] if config & 1 else 0
         self._bus_us = CONVERSION_US[config >> 6 & 7] if config & 2 else 0
-        self._cycle_us = (self._shunt_us + self._bus_us) * self._averages
+        self._turn_us = self._shunt_us + self._bus_us
+        self._cycle_us = self._turn_us * self._averages
         self._begun_us = self._seen_us = self._clock.now_us
         self._shunt_sum = self._bus_sum = 0.0
+        self._turn_shunt = self._turn_bus = 0.0  # of this turn alone
+        self._turn_known = True  # from its beginning
         self._pure, self._settled = True, False
 
     def _skip(self, now_us: int) -> None:
         """Leave out conversions whose results nobody can see: all but the last one before now."""
-        watched = self.registers[MASK] & 0xFC00
-        if self._cycle_us and not watched:
+        if self._cycle_us and not self.registers[MASK] & WATCHED:
             unseen = max(0, (now_us - self._begun_us) // self._cycle_us - 1)
             self._begun_us = self._seen_us = self._begun_us + unseen * self._cycle_us
 
@@ -180,6 +211,45 @@ class Ina226:
             self._begun_us = self._seen_us = self._begun_us + turns * self._cycle_us
             self._shunt_sum = self._bus_sum = 0.0
             self.registers[MASK] |= READY_FLAG
+
+    def _conversion_end(self) -> int:
+        """Return when the conversion ends that is under way."""
+        place_us = (self._seen_us - self._begun_us) % self._turn_us
+        length_us = self._shunt_us if place_us < self._shunt_us else self._turn_us
+        return self._seen_us + length_us - place_us
+
+    def _compare_until(self, until_us: int) -> None:
+        """Hold every conversion that ends by then against the limit, if one is watched."""
+        while self._cycle_us and self.registers[MASK] & LIMITS and self._conversion_end() <= until_us:
+            self._integrate(self._conversion_end())
+            place_us = (self._seen_us - self._begun_us) % self._turn_us
+            of_shunt = bool(self.registers[MASK] & OF_SHUNT)
+            if self._turn_known and place_us == (self._shunt_us % self._turn_us if of_shunt else 0):
+                self._compare()
+            if place_us == 0:
+                self._turn_shunt = self._turn_bus = 0.0
+                self._turn_known = True
+
+    def _compare(self) -> None:
+        if self._beyond_limit():
+            self.registers[MASK] |= ALERT_FLAG
+        elif not self.registers[MASK] & LATCH:
+            self.registers[MASK] &= ~ALERT_FLAG
+
+    def _beyond_limit(self) -> bool:
+        """Return whether the one watched value, the highest bit where several are set, is beyond the limit."""
+        mask, limit = self.registers[MASK], self.registers[LIMIT]
+        shunt = _bits(self._turn_shunt, self._shunt_us, SHUNT_LSB_V)
+        bus = max(0, _bits(self._turn_bus, self._bus_us, BUS_LSB_V))
+        power = abs(int(shunt * self.registers[CALIBRATION] / 2048)) * bus // 20_000
+        watched = (
+            (SHUNT_OVER, shunt > _signed(limit)),
+            (SHUNT_UNDER, shunt < _signed(limit)),
+            (BUS_OVER, bus > limit),
+            (BUS_UNDER, bus < limit),
+            (POWER_OVER, power > limit),
+        )
+        return next((beyond for bit, beyond in watched if mask & bit), False)
 
     def _integrate(self, until_us: int) -> None:
         """Add what has been on the inputs between the time last seen and `until_us` to the sums."""
@@ -194,59 +264,40 @@ class Ina226:
             shunt_vus, bus_vus = steady[0] * shunt_us, steady[1] * (end_us - past_us - shunt_us)
         self._shunt_sum += shunt_vus
         self._bus_sum += bus_vus
+        self._turn_shunt += shunt_vus
+        self._turn_bus += bus_vus
         self._seen_us = until_us
 
     def _shunt_time(self, elapsed_us: int) -> int:
         """Return how much of the first `elapsed_us` of a cycle went into shunt conversions."""
-        turns, rest_us = divmod(elapsed_us, self._shunt_us + self._bus_us)
+        turns, rest_us = divmod(elapsed_us, self._turn_us)
         return turns * self._shunt_us + min(rest_us, self._shunt_us)
 
     def _finish(self) -> None:
         registers = self.registers
         if self._shunt_us:
-            mean_v = self._shunt_sum / (self._shunt_us * self._averages)
-            shunt = max(-0x8000, min(0x7FFF, round(mean_v / SHUNT_LSB_V)))
+            shunt = _bits(self._shunt_sum, self._shunt_us * self._averages, SHUNT_LSB_V)
             registers[SHUNT] = shunt & 0xFFFF
             current = int(shunt * registers[CALIBRATION] / 2048)
             registers[CURRENT] = max(-0x8000, min(0x7FFF, current)) & 0xFFFF
             overflow = OVERFLOW_FLAG if not -0x8000 <= current <= 0x7FFF else 0
             registers[MASK] = registers[MASK] & ~OVERFLOW_FLAG | overflow
         if self._bus_us:
-            mean_v = self._bus_sum / (self._bus_us * self._averages)
-            registers[BUS] = max(0, min(0x7FFF, round(mean_v / BUS_LSB_V)))
+            registers[BUS] = max(0, _bits(self._bus_sum, self._bus_us * self._averages, BUS_LSB_V))
         registers[POWER] = min(0xFFFF, abs(_signed(registers[CURRENT])) * registers[BUS] // 20_000)
         registers[MASK] |= READY_FLAG
-        self._alert()
         self._begun_us = self._seen_us
         self._shunt_sum = self._bus_sum = 0.0
-        watched = registers[MASK] & 0xFC00
+        watched = registers[MASK] & WATCHED
         self._settled = self._pure and not watched and self._source.steady_v() is not None
         self._pure = True
         if not registers[CONFIG] & 4:
             self._cycle_us, self._settled = 0, False  # one shot
 
-    def _alert(self) -> None:
-        mask = self.registers[MASK]
-        if not mask & 0xFC00:
-            return
-        if self._beyond_limit(mask):
-            self.registers[MASK] |= ALERT_FLAG
-        elif not mask & LATCH:
-            self.registers[MASK] &= ~ALERT_FLAG
-        self._asserted = bool(self.registers[MASK] & ALERT_FLAG or mask & READY_ALERT)
 
-    def _beyond_limit(self, mask: int) -> bool:
-        """Return whether the one watched value, the highest bit where several are set, is beyond the limit."""
-        limit = self.registers[LIMIT]
-        shunt, bus = _signed(self.registers[SHUNT]), self.registers[BUS]
-        watched = (
-            (SHUNT_OVER, shunt > _signed(limit)),
-            (SHUNT_UNDER, shunt < _signed(limit)),
-            (BUS_OVER, bus > limit),
-            (BUS_UNDER, bus < limit),
-            (POWER_OVER, self.registers[POWER] > limit),
-        )
-        return next((beyond for bit, beyond in watched if mask & bit), False)
+def _bits(sum_vus: float, time_us: int, lsb_v: float) -> int:
+    """Return the mean of a sum in bits, held at the ends of the scale; 0 where nothing was converted."""
+    return max(-0x8000, min(0x7FFF, round(sum_vus / time_us / lsb_v))) if time_us else 0
 
 
 def _signed(value: int) -> int:
