@@ -17,6 +17,7 @@ ORDERS = {  # what is going on: the script, and the time after connecting within
     "two coils at 30 %": ("fire {two} at 30 % for 4 s", (600, 2400)),
     "a coil at 100 %": ("fire {one} at 100 % for 900 ms", (250, 700)),
     "all coils off": ("wait 3 s", (300, 1500)),
+    "a guard trips": ("guard any.temperature > 40 C\nfire {one} at 100 % for 900 ms", (0, 50)),
     "attitude is asked for": ("guard roll > 80 deg\nfire {one} at 5 % for 3 s", (300, 1500)),
 }
 RECOVERIES = {
@@ -38,7 +39,7 @@ name = "line-lose:20"   # of 1000 bytes
 at_ms = 0
 for_ms = 3000
 """
-EXIT_CODES = {"done": 0, "refused": 4, "fault": 6, "link lost": 7}
+EXIT_CODES = {"done": 0, "guard": 1, "refused": 4, "fault": 6, "link lost": 7}
 ANY = "any"  # code: none, or that of whatever a wrong bit looks like
 
 
@@ -76,11 +77,12 @@ class Row:
         return RECOVERIES[self.recovery].format(again=self.again)
 
 
-TWO, FULL, IDLE, BEFORE, ATTITUDE = (
+TWO, FULL, IDLE, BEFORE, GUARDED, ATTITUDE = (
     "two coils at 30 %",
     "a coil at 100 %",
     "all coils off",
     "before arming",
+    "a guard trips",
     "attitude is asked for",
 )
 GOES_ON = (None, "done", "none")
@@ -195,6 +197,10 @@ ROWS = (
     Row("hang:control", TWO, "F12", MONOSTABLE_MS + STEP_MS, "fault", "clear", "As above."),
     Row("hang:send", TWO, "F12", MONOSTABLE_MS + 60, "fault", "clear", "As above; telemetry is sent every 50 ms."),
     Row("reset", TWO, "F12", 0, "fault", "clear", "PWR_EN rests low: the contactor opens."),
+    Row(
+        "flash-cut:2", GUARDED, "F10", None, "guard", "none",
+        "Records are written when every coil is off. The robot starts anew; the torn record is passed over.",
+    ),
     Row("line-flip:5", TWO, "", *GOES_ON, "A damaged frame is dropped and sent again."),
     Row("line-lose:2", TWO, "", *GOES_ON, "As above."),
     Row("line-double:5", TWO, "", *GOES_ON, "As above."),
