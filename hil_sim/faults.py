@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from random import Random
 
-from hil_sim import mishaps
+from hil_sim import linemishaps, mishaps
 from hil_sim.bench import Bench
 from hil_sim.devices.lsm6ds3tr import Lsm6ds3tr
 from hil_sim.journal import FAULT
@@ -98,10 +98,10 @@ TABLE = (
     Fault("thermistor-short", "The thermistor is shorted.", on_off(mishaps.thermistor("short"))),
     Fault("thermistor-drift", "The thermistor reads more with each second.", mishaps.thermistor_drift, argument=DRIFT),
     Fault("thermistor-whole", "The thermistor is mended.", once(mishaps.thermistor_whole), False),
-    Fault("i2c-nack", "So many transfers find nobody.", mishaps.i2c_nack, argument=COUNT),
-    Fault("i2c-bit-error", "One bit is wrong in each of so many messages.", mishaps.i2c_bit_error, argument=COUNT),
-    Fault("i2c-stuck", "The clock of the bus is held low.", on_off(mishaps.i2c_stuck)),
-    Fault("i2c-free", "The bus is let go.", once(lambda bench: mishaps.i2c_stuck(bench, False)), False),
+    Fault("i2c-nack", "So many transfers find nobody.", linemishaps.i2c_nack, argument=COUNT),
+    Fault("i2c-bit-error", "One bit is wrong in each of so many messages.", linemishaps.i2c_bit_error, argument=COUNT),
+    Fault("i2c-stuck", "The clock of the bus is held low.", on_off(linemishaps.i2c_stuck)),
+    Fault("i2c-free", "The bus is let go.", once(lambda bench: linemishaps.i2c_stuck(bench, False)), False),
     Fault("pwm-dead", "The PWM chips do not answer, and go on driving.", on_off(mishaps.pwm_dead)),
     Fault("pwm-forgets", "The PWM chips have lost their registers.", once(mishaps.pwm_forgets), False),
     Fault("monitor-dead", "The monitor of the supply does not answer.", on_off(mishaps.monitor_dead)),
@@ -123,16 +123,16 @@ TABLE = (
     Fault("hang", "The firmware is caught in a loop, at once or in a task.", mishaps.hang, False, TASK),
     Fault("reset", "The processor is reset.", once(lambda bench: bench.world.reset()), False),
     Fault("flash-cut", "Power fails in the so-many-th write to the flash.", mishaps.flash_cut, argument=COUNT),
-    Fault("line-flip", "So many of 1000 bytes have a wrong bit.", mishaps.line_noise("flip"), argument=PERMILLE),
-    Fault("line-lose", "So many of 1000 bytes are lost.", mishaps.line_noise("lose"), argument=PERMILLE),
-    Fault("line-double", "So many of 1000 bytes come twice.", mishaps.line_noise("double"), argument=PERMILLE),
-    Fault("line-delay", "Bytes arrive so much later.", mishaps.line_delay, argument=DELAY),
-    Fault("line-baud", "The host's end runs at this rate.", mishaps.line_baud, argument=BAUD),
-    Fault("cable-cut", "The cable is pulled out.", on_off(mishaps.cable_cut)),
-    Fault("cable-join", "The cable is plugged in.", once(lambda bench: mishaps.cable_cut(bench, False)), False),
+    Fault("line-flip", "So many of 1000 bytes have a wrong bit.", linemishaps.line_noise("flip"), argument=PERMILLE),
+    Fault("line-lose", "So many of 1000 bytes are lost.", linemishaps.line_noise("lose"), argument=PERMILLE),
+    Fault("line-double", "So many of 1000 bytes come twice.", linemishaps.line_noise("double"), argument=PERMILLE),
+    Fault("line-delay", "Bytes arrive so much later.", linemishaps.line_delay, argument=DELAY),
+    Fault("line-baud", "The host's end runs at this rate.", linemishaps.line_baud, argument=BAUD),
+    Fault("cable-cut", "The cable is pulled out.", on_off(linemishaps.cable_cut)),
+    Fault("cable-join", "The cable is plugged in.", once(lambda bench: linemishaps.cable_cut(bench, False)), False),
     Fault("estop-open", "The emergency-stop loop is open.", on_off(lambda bench, on: bench.board.set_estop(not on))),
     Fault("estop-close", "The emergency-stop loop is closed.", once(lambda bench: bench.board.set_estop(True)), False),
-    Fault("host-killed", "The host's process has died: nothing is sent or read.", on_off(mishaps.host_killed)),
+    Fault("host-killed", "The host's process has died: nothing is sent or read.", on_off(linemishaps.host_killed)),
 )
 NAMES = tuple(fault.name for fault in TABLE)
 

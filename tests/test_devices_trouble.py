@@ -6,7 +6,8 @@ import pytest
 
 from hil_sim.devices.i2c import Bus
 from hil_sim.devices.trouble import BusTrouble, Noise
-from hil_sim.devices.uart import Uart, Wire
+from hil_sim.devices.uart import Uart
+from hil_sim.devices.wire import Wire
 
 SENT = bytes(range(256)) * 20
 BYTE_US = 87

@@ -3,7 +3,8 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil_sim.devices.uart import Uart, Wire
+from hil_sim.devices.uart import Uart
+from hil_sim.devices.wire import Wire
 
 
 def open_uart(baud: int = 115_200) -> Uart:
