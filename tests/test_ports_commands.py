@@ -36,6 +36,8 @@ def test_robots_fits_a_terminal_and_names_every_coil():
         (["circular", "--speed", "nan"], 2, "'nan' is not a number"),
         (["circular", "--link", "/proc/robot"], 3, "link /proc/robot: No such file or directory"),
         (["./none.toml"], 3, "no such robot file"),
+        (["circular", "--faults", "none.toml"], 2, "none.toml: No such file or directory"),
+        (["circular?faults=tests/none.toml"], 2, "tests/none.toml: No such file or directory"),
     ],
 )
 def test_what_cannot_be_built_is_refused(arguments, exit_code, message):
