@@ -63,3 +63,34 @@ def test_the_lower_identifier_wins_and_data_before_remote_before_extended(wins, 
 def test_what_is_no_frame_is_refused(fields):
     with pytest.raises(ValueError, match="at most"):
         Frame(**fields)
+
+
+def bits(text: str) -> list[int]:
+    return [int(bit) for bit in text.replace(" ", "")]
+
+
+def test_a_standard_frame_has_its_fields_in_order():
+    start_id_rtr_ide_r0 = "0 00100100011 0 0 0"
+
+    assert head(Frame(0x123, b"\xa5"))[:-15] == bits(start_id_rtr_ide_r0 + "0001 10100101")
+    assert head(Frame(0x123, remote=True, length=2))[:-15] == bits("0 00100100011 1 0 0 0010")
+
+
+def test_an_extended_frame_has_its_fields_in_order():
+    start_base_srr_ide = "0 10010001101 1 1"
+    rest_rtr_r1_r0_length = "000101011001111000 0 0 0 0000"
+
+    assert head(Frame(0x12345678 & 0x1FFFFFFF, extended=True))[:-15] == bits(start_base_srr_ide + rest_rtr_r1_r0_length)
+
+
+def test_ten_bits_follow_that_are_never_stuffed():
+    frame = Frame(0x123, bytes(8))
+
+    assert length_bits(frame) == len(stuffed(head(frame))) + 10
+
+
+def test_the_length_is_that_of_the_data_unless_another_is_given():
+    assert Frame(1, b"abc").length == 3
+    assert Frame(1).length == 0
+    assert Frame(1, remote=True, length=4).length == 4
+    assert Frame(1, bytes(8), length=0).length == 0

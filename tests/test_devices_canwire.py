@@ -51,7 +51,10 @@ def test_the_lower_identifier_wins_and_the_loser_follows_after_three_bits(rig):
 
     one.send(weak)
     two.send(strong)
-    rig.run_bits(length_bits(strong) + 3 + length_bits(weak) + 1)
+    ends_us = (length_bits(strong) + 3 + length_bits(weak)) * BIT_US
+    rig.clock.run_until(ends_us - 1)
+    assert three.received == [strong]
+    rig.clock.run_until(ends_us)
 
     assert three.received == [strong, weak]
     assert (one.losses, two.losses) == (1, 0)
@@ -221,3 +224,85 @@ def test_two_runs_take_the_same_course(rig):
         return [(station.received, station.losses, station.errors.receive) for station in stations]
 
     assert course() == course()
+
+
+def ends_of_failures(rig, station, count: int) -> list[int]:
+    """Return when the station's first failures ended, in bit times."""
+    ends = []
+    while len(ends) < count:
+        rig.clock.run_until(rig.clock.now_us + 1)
+        if station.failures > len(ends):
+            ends.append(rig.clock.now_us // BIT_US)
+    return ends
+
+
+def test_an_unanswered_frame_ends_with_one_error_flag_after_its_acknowledge_slot(rig):
+    one, frame = rig.station(), Frame(0x100)
+    one.send(frame)
+
+    first, second = ends_of_failures(rig, one, 2)
+
+    assert first == length_bits(frame) - 10 + 2 + 6 + 8  # checksum delimiter and slot, flag, delimiter
+    assert second - first == 3 + first
+
+
+def test_who_hears_a_damaged_frame_adds_a_flag_of_its_own_unless_passive(rig):
+    one, two = rig.station(), rig.station()
+    frame = Frame(0x100)
+    rig.wire.spoil(1)
+    one.send(frame)
+    (active,) = ends_of_failures(rig, one, 1)
+    rig.run_ms(1)
+    start = rig.clock.now_us // BIT_US
+    two.errors.receive = 128
+    rig.wire.spoil(1)
+    one.send(frame)
+    one.failures = 0
+    (passive,) = ends_of_failures(rig, one, 1)
+
+    half = (length_bits(frame) - 10) // 2
+    assert active == half + 6 + 6 + 8
+    assert passive - start == half + 6 + 8
+
+
+def test_a_sender_that_recovers_from_passive_waits_no_longer(rig):
+    one, two = rig.station(), rig.station()
+    one.errors.transmit = 128
+    one.send(Frame(0x100))
+    rig.run_ms(1)
+    assert one.errors.transmit == 127
+    start_us = rig.clock.now_us
+
+    one.send(Frame(0x101))
+    rig.run_bits(length_bits(Frame(0x101)))
+
+    assert two.received[-1] == Frame(0x101)
+    assert rig.clock.now_us - start_us == length_bits(Frame(0x101)) * BIT_US
+
+
+@pytest.mark.parametrize(
+    ("transmit", "receive", "passive", "bus_off"),
+    [
+        (127, 127, False, False),
+        (128, 0, True, False),
+        (0, 128, True, False),
+        (255, 0, True, False),
+        (256, 0, True, True),
+    ],
+)
+def test_the_limits_of_the_counters_are_those_of_the_specification(rig, transmit, receive, passive, bus_off):
+    errors = rig.station().errors
+    errors.transmit, errors.receive = transmit, receive
+
+    assert (errors.passive, errors.bus_off) == (passive, bus_off)
+
+
+def test_the_receive_counter_stays_within_eight_bits_and_falls_to_127_at_once(rig):
+    errors = rig.station().errors
+    for _ in range(40):
+        errors.garbled(destroyed=True)
+    assert errors.receive == 255
+
+    errors.heard()
+
+    assert errors.receive == 127

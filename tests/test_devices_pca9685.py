@@ -247,3 +247,141 @@ def test_only_a_change_of_an_output_is_reported(rig):
     rig.write(0x02, 0xC2)
 
     assert rig.changes == 1
+
+
+@pytest.mark.parametrize(
+    ("mode2", "gate"),
+    [(0x04, OFF), (0x05, ON), (0x06, OFF), (0x07, OFF), (0x00, OFF), (0x01, OFF), (0x02, OFF), (0x03, OFF)],
+)
+def test_outputs_that_are_not_enabled_follow_the_table_of_outne(rig, mode2, gate):
+    """Table 10 of the data sheet: 0; 1 if totem-pole, else high impedance; high impedance, which leaves a gate low."""
+    rig.wake()
+    rig.write(0x06, 0x00, 0x10, 0x00, 0x00)
+    rig.write(0x01, mode2)
+
+    rig.chip.enable(False)
+
+    assert rig.chip.outputs == [gate] * 16
+
+
+def test_polarity_does_not_touch_outputs_that_are_not_enabled(rig):
+    rig.write(0x01, 0x14)
+
+    rig.chip.enable(False)
+
+    assert rig.chip.outputs == [OFF] * 16
+
+
+def test_only_five_bits_of_mode2_and_seven_of_an_address_are_kept(rig):
+    rig.write(0x01, 0xFF)
+    rig.write(0x02, 0xFF)
+
+    assert rig.read(0x01) == [0x1F]
+    assert rig.read(0x02) == [0xFE]
+
+
+def test_reading_with_auto_increment_wraps_as_writing_does(rig):
+    rig.write(0x00, 0x30)
+
+    assert rig.read(0x45, 3) == [0x10, 0x30, 0x04]
+    assert rig.read(0xFD, 3) == [0x00, 0x1E, 0x30]
+
+
+def test_a_write_into_the_reserved_registers_is_cut_short_there(rig):
+    assert rig.write(0xFF, 0x55) == 0
+    assert rig.write(0x46, 0x55) == 0
+    assert rig.write(0xFA, 0x00, 0x10) == 3  # without auto-increment the pointer stays where it may
+
+
+def test_the_prescaler_gives_the_frequencies_of_the_data_sheet(rig):
+    for prescale, hz in ((3, 1526), (30, 197), (255, 24)):
+        rig.write(0xFE, prescale)
+        assert round(1e6 / rig.chip.pwm_period_us) == hz
+
+
+def test_the_prescaler_set_by_a_burst_while_awake_is_ignored(rig):
+    rig.wake()
+
+    rig.write(0xFA, 0, 0, 0, 0x10, 5)
+
+    assert rig.read(0xFE) == [0x1E]
+
+
+def test_all_led_on_is_beaten_by_one_channel_that_is_full_off(rig):
+    rig.wake()
+    rig.write(0xFA, 0x00, 0x10, 0x00, 0x00)
+
+    rig.write(0x09, 0x10)
+
+    assert rig.chip.outputs == [OFF, *[ON] * 15]
+
+
+def test_a_full_off_bit_leaves_the_counts_as_they_were(rig):
+    rig.wake()
+    rig.write(0x06, 0x00, 0x00, 0x00, 0x08)
+    rig.write(0x09, 0x18)
+    assert rig.chip.outputs[0] == OFF
+
+    rig.write(0x09, 0x08)
+
+    assert rig.chip.outputs[0] == (0.0, 0.5)
+
+
+def test_all_call_and_sub_addresses_may_be_moved(rig):
+    rig.write(0x05, 0x6A << 1)
+    assert rig.bus.at(0x6A)
+    assert not rig.bus.at(0x70)
+
+    for register, bit, address in ((0x02, 0x08, 0x51), (0x03, 0x04, 0x52), (0x04, 0x02, 0x53)):
+        rig.write(register, address << 1)
+        assert not rig.bus.at(address)
+        rig.write(0x00, 0x10 | bit)
+        assert rig.bus.at(address)
+
+
+def test_two_chips_take_an_all_call_at_once(rig):
+    other = Pca9685(0x61, rig.clock, lambda: None)
+    bus = Bus([rig.chip, other])
+    for chip in (rig.chip, other):
+        chip.enable(True)
+    bus.write(0x70, bytes((0x00, 0x21)))
+
+    bus.write(0x70, bytes((0xFA, 0x00, 0x10, 0x00, 0x00)))
+
+    assert rig.chip.outputs == other.outputs == [ON] * 16
+
+
+def test_a_software_reset_reaches_every_chip_and_takes_one_byte_alone(rig):
+    other = Pca9685(0x61, rig.clock, lambda: None)
+    bus = Bus([rig.chip, other])
+    for address in (0x60, 0x61):
+        bus.write(address, bytes((0x00, 0x20)))
+
+    assert bus.write(0, b"\x06\x06") == 1
+
+    assert rig.chip.registers[0] == other.registers[0] == 0x11
+
+
+def test_restart_is_told_while_awake_until_it_is_carried_out(rig):
+    rig.wake()
+    rig.write(0x06, 0x00, 0x10, 0x00, 0x00)
+    rig.write(0x00, 0x30)
+    rig.wake()
+    assert rig.read(0x00) == [0xA0]
+    assert rig.chip.outputs[0] == OFF
+
+    rig.write(0x00, 0xA0)
+
+    assert rig.read(0x00) == [0x20]
+    assert rig.chip.outputs[0] == ON
+
+
+def test_writing_zero_to_restart_does_nothing(rig):
+    rig.wake()
+    rig.write(0x06, 0x00, 0x10, 0x00, 0x00)
+    rig.write(0x00, 0x30)
+    rig.wake()
+
+    rig.write(0x00, 0x20)
+
+    assert rig.read(0x00) == [0xA0]

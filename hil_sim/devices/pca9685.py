@@ -1,11 +1,20 @@
 """PCA9685: sixteen PWM outputs behind I2C registers, as the NXP data sheet describes them.
 
+From it, Rev. 2 (July 2009), 3 (September 2010) and 4 (April 2015): registers, wrap of the auto-increment and reserved
+addresses (table 3), restart (7.3.1.1), what the counts do (figures 9 and 10, table 7), OE and OUTNE (7.4, table 10),
+software reset (7.6). That MODE2 is 04h after a reset is on a page at which nobody here could look; four public models
+and drivers agree on it.
+
 Kept faithfully, because drivers trip over them: ALLCALL answers 0x70 after reset; PRE_SCALE is ignored unless asleep;
 auto-increment wraps at 45h and FEh; reserved registers are not acknowledged; waking needs 500 us and a RESTART; full
 OFF beats full ON; the registers survive a reset of the microcontroller and the outputs go on.
 
-DEVIATION: new counts take effect at STOP and not at the end of the PWM cycle, at most 0.7 ms later at 1526 Hz.
-ASSUMED: no pull-ups on the outputs, so the open-drain setting and high impedance leave a MOSFET's gate low.
+DEVIATION: new counts take effect at STOP and not at the end of the PWM cycle (figure 10), at most 0.7 ms later at
+1526 Hz, an eighth of a control step: it would cost an event for every write. OCH, which moves that to the acknowledge
+of the fourth byte, changes nothing here. SLEEP sets RESTART at once and not at the end of the cycle, and an orderly
+shutdown before it keeps the counts, which the sheet calls invalid: they are all full OFF anyhow.
+ASSUMED: no pull-ups on the outputs, so the open-drain setting and high impedance leave a MOSFET's gate low; without a
+clock at EXTCLK the outputs stay low; the register for tests (FFh) is not acknowledged, as nobody may write it.
 """
 
 from collections.abc import Callable
