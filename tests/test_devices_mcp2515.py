@@ -203,6 +203,58 @@ def test_a_length_beyond_eight_sends_eight_bytes(live):
     assert live.stations[0].received == [Frame(0x100, bytes(range(8)), length=15)]
 
 
+def test_a_request_may_also_be_written_into_the_control_register(live):
+    live.load(1, FRAME)
+
+    live.write(0x40, 0x0B)
+    assert live.get(0x40) == 0x0B
+    live.run_us(1000)
+
+    assert live.stations[0].received == [FRAME]
+    assert live.get(0x40) == 0x03
+
+
+def test_a_request_that_is_taken_back_while_on_the_wire_is_still_sent_but_not_repeated(live):
+    live.send(FRAME)
+    live.run_us(10)
+    live.write(0x30, 0x00)
+    live.run_us(1000)
+    assert live.stations[0].received == [FRAME]
+
+    live.wire.spoil(1)
+    live.send(FRAME)
+    live.run_us(10)
+    live.write(0x30, 0x00)
+    live.run_us(1000)
+
+    assert live.stations[0].received == [FRAME]
+    assert live.get(0x30) == 0x10
+
+
+def test_abat_keeps_back_what_is_requested_until_it_is_cleared(live):
+    live.modify(CANCTRL, 0x10, 0x10)
+    live.send(FRAME)
+    live.run_us(1000)
+    assert live.stations[0].received == []
+
+    live.modify(CANCTRL, 0x10, 0x00)
+    live.run_us(1000)
+
+    assert live.stations[0].received == [FRAME]
+
+
+def test_one_shot_gives_up_when_it_loses_arbitration(live):
+    live.modify(CANCTRL, 0x08, 0x08)
+    live.load(0, Frame(0x200))
+    live.stations[0].send(Frame(0x100))
+
+    live.say(0x81)
+    live.run_us(2000)
+
+    assert live.get(0x30) == 0x20
+    assert live.stations[0].received == []
+
+
 def test_load_tx_buffer_begins_at_the_identifier_or_at_the_data(live):
     for buffer in range(3):
         live.say(0x40 | buffer << 1, 0x20 + buffer, 0, 0, 0, 1)

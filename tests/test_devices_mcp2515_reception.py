@@ -136,6 +136,13 @@ def test_of_several_matching_filters_the_lowest_is_told():
     assert rig.get(0x70) & 7 == 2
 
 
+def test_a_standard_filter_is_held_against_all_11_bits():
+    rig = filtering(filters=((0, 0x24, 0x60, 0, 0),))
+
+    for bit in range(11):
+        assert hear(rig, Frame(0x123 ^ 1 << bit)) == 0, bit
+
+
 def test_bits_that_are_not_masked_do_not_matter():
     rig = filtering(masks=((0xFF, 0x00, 0, 0), (0xFF, 0xE0, 0, 0)), filters=((0, 0x24, 0, 0, 0),))
 
@@ -153,7 +160,8 @@ def test_an_extended_filter_is_held_against_all_29_bits():
     wanted = Frame(0x1ABCDEF5, extended=True)
     rig = filtering(masks=((0xFF, 0xE3, 0xFF, 0xFF), (0xFF, 0xE0, 0, 0)), filters=((0, 0xD5, 0xE8, 0xDE, 0xF5),))
 
-    assert hear(rig, Frame(0x1ABCDEF4, extended=True)) == 0
+    for bit in range(29):
+        assert hear(rig, Frame(wanted.id ^ 1 << bit, extended=True)) == 0, bit
     assert hear(rig, wanted) == 1
 
 

@@ -11,10 +11,11 @@ changes nothing. Its axes are the axes of the robot's core.
 
 Zero levels are drawn from the seed within the typical ones (40 mg, 3 deg/s).
 
-RECALLED, from the application note: a high byte read clears its sensor's flag; a reset takes 50 us. ASSUMED: the
-turn-on time is that of each sensor leaving power-down; noise is white up to half the rate, in the low-power and normal
-modes as well; no filter delays; codes that are not allowed stop a sensor. Not there: FIFO, interrupts, filters,
-self-test, embedded functions; their registers keep what is written.
+RECALLED, from the application note, of which no copy was found: a high byte read clears its sensor's flag; a reset
+takes 50 us (drivers wait longer: Zephyr 35 ms, which does no harm here either). ASSUMED: the turn-on time is that of
+each sensor leaving power-down; noise is white up to half the rate, in the low-power and normal modes as well; no
+filter delays; codes that are not allowed stop a sensor. Not there: FIFO, interrupts, filters, self-test, embedded
+functions; their registers keep what is written.
 """
 
 import random

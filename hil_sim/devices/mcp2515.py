@@ -9,8 +9,8 @@ rise of CS after READ RX BUFFER; an instruction is over with CS, whatever is mis
     chip.exchange(RESET)
     chip.select(False)
 
-RECALLED: SPI is deaf for 128 clocks after a reset (8.1). ASSUMED: MISO rests low, by the pull-down of the processor's
-pad, while nothing is clocked out; addresses wrap at 7Fh.
+SPI is deaf for 128 clocks of the crystal after a reset (8.1, page 55, as Zephyr's mcp2515 driver and others quote it).
+ASSUMED: MISO rests low, by the pull-down of the processor's pad, while nothing is clocked out; addresses wrap at 7Fh.
 """
 
 from collections.abc import Callable

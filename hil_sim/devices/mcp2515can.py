@@ -5,11 +5,11 @@ buffer takes a frame is in mcp2515filters.py), bit timing (5), error states (6),
 faithfully, because drivers trip over them: what may only be written in configuration mode is silently left alone
 otherwise; normal and loopback mode are left only when nothing is pending; waking up leads to listen-only.
 
-RECALLED, no copy of these pages at hand: of buffers of equal priority the highest number goes first (3.2); ABTF is set
-by ABAT only (3.6); waking needs WAKIE (10.2.1). ASSUMED: a buffer that is pending cannot be written; a chip asleep
-ignores REQOP; ERRIF cannot be cleared while its cause is in EFLG (7.0 says so of every interrupt); TEC shows at most
-255; TXnRTS pins have their pull-ups. Not connected: TXnRTS, RXnBF, CLKOUT and SOF; their registers keep what is
-written.
+Of buffers of equal priority the highest number goes first (3.2, page 15, as public drivers quote it). RECALLED, no copy
+of these pages at hand: ABTF is set by ABAT only (3.6); waking needs WAKIE (10.2.1). ASSUMED: a buffer that is pending
+cannot be written; a chip asleep ignores REQOP; ERRIF cannot be cleared while its cause is in EFLG (7.0 says so of every
+interrupt); TEC shows at most 255; TXnRTS pins have their pull-ups. DEVIATION: waking takes no time, but the frame that
+wakes is not received. Not connected: TXnRTS, RXnBF, CLKOUT and SOF; their registers keep what is written.
 """
 
 from collections.abc import Callable
