@@ -67,6 +67,7 @@ class Commands:
             core.control.all_off(core.now_ms)
         try:
             if test.code:
+                core.records.note(core.now_ms, test.code, test.channel, test.value, core.was)
                 raise Refused(test.code, test.channel, test.value, test.limit)
             if self._calibrates:
                 core.records.calibrate(without)

@@ -195,8 +195,19 @@ def test_a_coil_that_is_warm_or_broken_is_not_calibrated(rig):
     rig.bench.break_coil("D")
     assert refused(lambda: rig.robot.calibrate(["A"])) == ("F18", "D")
 
-    assert rig.bench.board.flash.operations == 0
     assert not rig.bench.board.powered
+    assert not any(rig.robot.settings().resistance_mohm.values())
+
+
+def test_what_the_self_test_finds_is_kept_as_well(rig):
+    rig.bench.break_coil("D")
+    assert refused(rig.robot.arm) == ("F18", "D")
+    rig.run_alone(seconds=0.1)
+    rig.bench.world.power_on()
+
+    (fault,) = reconnected(rig)[0]
+
+    assert (causes.row(fault.code).name, fault.coil, fault.state) == ("F18", "D", "idle")
 
 
 @pytest.mark.parametrize("operation", range(1, WRITE_OPERATIONS + 1))
