@@ -15,16 +15,16 @@ from firmware.trial import Trial
 STEP_MS = 5
 
 
-def run(loud: int = 0, confirm=None) -> None:
+def run(loud: int, is_new: bool, settled) -> None:
     """Serve for ever. An error opens the coil supply and is left to the watchdog, which restarts the firmware.
 
-    `loud` is the PWM chip that boot.py could not switch off, `confirm` keeps the slot of a program that is on trial.
+    `loud` is the PWM chip that boot.py could not switch off, or 0; for `is_new` and `settled` see trial.py.
     """
     board = pico.Board()
     try:
         with open(sys.path[0] + "/robot.json", "rb") as file:
             core = Core(board, Profile(file.read()), pico.boot_number(), reset_cause() == WDT_RESET, loud)
-        loop(board, core, Trial(confirm))
+        loop(board, core, Trial(is_new, settled))
     finally:
         board.power(False)
     reset()

@@ -21,13 +21,13 @@ REAL = {
 }
 CONFIRMED = NOWHERE = 255
 
-# A program of a few lines that confirms itself at once, and lives; `{}` is what it prints.
+# A program of a few lines that is healthy at once, and lives; `{}` is what it prints.
 SMALL = """
 import time
 from machine import WDT
-def run(loud, confirm):
+def run(loud, is_new, settled):
     print("{}")
-    if confirm: confirm()
+    settled()
     dog = WDT(timeout=200)
     while True:
         time.sleep_ms(50)
