@@ -172,6 +172,13 @@ def test_the_extended_part_of_a_filter_is_held_against_the_first_data_bytes_of_a
     assert hear(rig, Frame(0x123, b"\xab\xcd\x00")) == 1
 
 
+@pytest.mark.parametrize(("data", "passes"), [(b"", 1), (b"\xab", 1), (b"\xac", 0), (b"\xab\xcd", 1), (b"\xaa\xcd", 0)])
+def test_data_bytes_that_a_frame_does_not_have_are_not_compared(data, passes):
+    rig = filtering(masks=((0xFF, 0xE0, 0xFF, 0xFF), (0xFF, 0xE0, 0, 0)), filters=((0, 0x24, 0x60, 0xAB, 0xCD),))
+
+    assert hear(rig, Frame(0x123, data)) == passes
+
+
 @pytest.mark.parametrize(("mode", "accepted"), [(0x20, [1, 0]), (0x40, [0, 1])])
 def test_a_buffer_may_be_kept_for_one_kind_of_identifier(mode, accepted):
     rig = filtering(masks=((0, 0, 0, 0), (0xFF, 0xE0, 0, 0)), filters=((0, 0, STANDARD, 0, 0), (1, 0, EXTENDED, 0, 0)))

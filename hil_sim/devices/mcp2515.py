@@ -17,7 +17,9 @@ from collections.abc import Callable
 
 from hil_sim.clock import Clock
 from hil_sim.devices.canwire import CanWire
-from hil_sim.devices.mcp2515can import RX0IF, RX1IF, Mcp2515Can
+from hil_sim.devices.mcp2515can import Mcp2515Can
+from hil_sim.devices.mcp2515filters import rx_status
+from hil_sim.devices.mcp2515flags import RX0IF, RX1IF
 from hil_sim.devices.mcp2515registers import BIT_MODIFIABLE, D0, RX, SIDH, TX, plain
 
 RESET, WRITE, READ, BIT_MODIFY, READ_STATUS, RX_STATUS = 0xC0, 0x02, 0x03, 0x05, 0xA0, 0xB0
@@ -51,7 +53,7 @@ class Mcp2515:
     def select(self, selected: bool) -> None:
         """Follow the CS pin, True for low; its rise ends an instruction."""
         if self._selected and not selected and self._heard and self._heard[0] & 0xF9 == READ_RX:
-            self.can.clear(RX1IF if self._heard[0] & 4 else RX0IF)
+            self.can.flags.clear(RX1IF if self._heard[0] & 4 else RX0IF)
         self._selected = selected
         self._heard = []
 
@@ -66,7 +68,7 @@ class Mcp2515:
 
     def int_level(self) -> int:
         """Return the level of the INT pin."""
-        return self.can.int_level() if self.alive else 1
+        return self.can.flags.level() if self.alive else 1
 
     def _say(self, instruction: int, place: int) -> int:
         """Return what is clocked out under the byte at `place`, 0 being the instruction."""
@@ -76,7 +78,7 @@ class Mcp2515:
             return self.can.load(RX[instruction >> 2 & 1] + (D0 if instruction & 2 else SIDH) + place - 1)
         if instruction == READ_STATUS and place >= 1:
             return self.can.status()
-        return self.can.rx_status() if instruction == RX_STATUS and place >= 1 else FLOATING
+        return rx_status(self.can.registers) if instruction == RX_STATUS and place >= 1 else FLOATING
 
     def _take(self, instruction: int, place: int, byte: int) -> None:
         """Act on the byte at `place`."""

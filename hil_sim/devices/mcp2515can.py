@@ -16,25 +16,22 @@ from collections.abc import Callable
 
 from hil_sim.clock import Clock, Event
 from hil_sim.devices import mcp2515registers as regs
-from hil_sim.devices.canerrors import PASSIVE_ABOVE, WARNING, Errors
+from hil_sim.devices.canerrors import Errors
 from hil_sim.devices.canframe import Frame, length_bits
 from hil_sim.devices.canwire import CanWire
-from hil_sim.devices.mcp2515filters import BUKT, choose
+from hil_sim.devices.mcp2515filters import BUKT, receive
+from hil_sim.devices.mcp2515flags import MERRF, RX0IF, RX1IF, TX0IF, WAKIF, Flags
 
 NORMAL, SLEEP, LOOPBACK, LISTEN_ONLY, CONFIGURATION = (mode << 5 for mode in range(5))
 REQOP, ABAT, ONE_SHOT = 0xE0, 0x10, 0x08  # in CANCTRL
 ABTF, MLOA, TXERR, TXREQ, PRIORITY = 0x40, 0x20, 0x10, 0x08, 0x03  # in TXBnCTRL
-RXRTR, BUKT1 = 0x08, 0x02  # in RXB0CTRL
-MERRF, WAKIF, ERRIF, TX0IF, RX1IF, RX0IF = 0x80, 0x40, 0x20, 0x04, 0x02, 0x01
-RX1OVR, RX0OVR, TXBO, TXEP, RXEP, TXWAR, RXWAR, EWARN = 0x80, 0x40, 0x20, 0x10, 0x08, 0x04, 0x02, 0x01
-CODES = (ERRIF, WAKIF, TX0IF, TX0IF << 1, TX0IF << 2, RX0IF, RX1IF)  # of interrupts, 1 to 7, table 7-1
+BUKT1 = 0x02  # in RXB0CTRL
 BUFFERS = range(3)
-ROLLED_OVER = 6
 _COUNT_MAX = 255
 
 
 class Mcp2515Can:
-    """One chip on `wire`; `interrupted` is called when the level of INT has changed."""
+    """One chip on `wire`, with its interrupt `flags`; `interrupted` is called when the level of INT has changed."""
 
     def __init__(self, clock: Clock, wire: CanWire, crystal_hz: int, interrupted: Callable[[], None]) -> None:
         self.errors = Errors()
@@ -43,8 +40,8 @@ class Mcp2515Can:
         self._clock = clock
         self.wire = wire
         self._crystal_hz = crystal_hz
-        self._interrupted = interrupted
-        self._level = 1
+        self.registers = regs.after_reset()
+        self.flags = Flags(self.registers, self.errors, interrupted)
         self._loop_at: Event | None = None
         self.reset()
         wire.join(self)
@@ -54,7 +51,7 @@ class Mcp2515Can:
         if self._loop_at is not None:
             self._loop_at.cancel()
             self._loop_at = None
-        self.registers = regs.after_reset()
+        self.registers[:] = regs.after_reset()
         self._sending: int | None = None  # the buffer whose frame is on the wire
         self._withdrawn = False  # its request was taken back meanwhile
         self._enter(CONFIGURATION)
@@ -63,7 +60,7 @@ class Mcp2515Can:
         """Return the register at an address."""
         register = regs.plain(address)
         if register == regs.CANSTAT:
-            return self.mode | self._interrupt_code() << 1
+            return self.mode | self.flags.code() << 1
         if register in (regs.TEC, regs.REC):
             return min(_COUNT_MAX, self.errors.transmit if register == regs.TEC else self.errors.receive)
         if register == regs.TXRTSCTRL:
@@ -86,7 +83,7 @@ class Mcp2515Can:
             if register == regs.RX[0]:
                 self.registers[register] = self.registers[register] & ~BUKT1 | (value & BUKT) >> 1
             self._wake_if_told()
-            self._tell()
+            self.flags.tell()
 
     def ask(self, buffer: int) -> None:
         """Request that a buffer be sent."""
@@ -98,11 +95,6 @@ class Mcp2515Can:
             self.wire.request()
             self._loop()
 
-    def clear(self, flags: int) -> None:
-        """Clear interrupt flags."""
-        self.registers[regs.CANINTF] &= ~flags
-        self._tell()
-
     def status(self) -> int:
         """Return what READ STATUS answers, figure 12-8."""
         flags = self.registers[regs.CANINTF]
@@ -110,24 +102,6 @@ class Mcp2515Can:
         for buffer in BUFFERS:
             status |= self._pending(buffer) << 2 + 2 * buffer | bool(flags & TX0IF << buffer) << 3 + 2 * buffer
         return status
-
-    def rx_status(self) -> int:
-        """Return what RX STATUS answers, figure 12-9: the buffers that are full, and the first one's message."""
-        full = self.registers[regs.CANINTF] & (RX0IF | RX1IF)
-        if not full:
-            return 0
-        at = regs.RX[0 if full & RX0IF else 1]
-        hit = self.registers[at] & (1 if full & RX0IF else 7)
-        rolled_over = 0 if full & RX0IF or hit > 1 else ROLLED_OVER
-        extended = bool(self.registers[at + regs.SIDL] & regs.EXIDE)
-        remote = bool(
-            self.registers[at + regs.DLC] & regs.RTR if extended else self.registers[at + regs.SIDL] & regs.SRR
-        )
-        return full << 6 | extended << 4 | remote << 3 | hit + rolled_over
-
-    def int_level(self) -> int:
-        """Return the level of the INT pin: 0 while an interrupt that is enabled is pending."""
-        return int(not self.registers[regs.CANINTE] & self.registers[regs.CANINTF])
 
     def offered(self) -> Frame | None:
         """Return the frame to send next: of the highest priority, of equal ones the highest buffer."""
@@ -138,7 +112,7 @@ class Mcp2515Can:
     def edge(self) -> None:
         """Wake up from sleep, if that is enabled; the frame that does it is not received."""
         if self.mode == SLEEP:
-            self._raise(WAKIF)
+            self.flags.set(WAKIF)
             self._wake_if_told()
 
     def began(self) -> None:
@@ -157,15 +131,15 @@ class Mcp2515Can:
         """Take the request back and interrupt."""
         buffer, self._sending = self._sending, None
         if buffer is not None:
-            self._note_errors()
+            self.flags.note_errors()
             self._done(buffer)
-            self._raise(TX0IF << buffer)
+            self.flags.set(TX0IF << buffer)
 
     def failed(self) -> None:
         """Say so in the buffer; it tries again unless it has one shot or was aborted meanwhile."""
         buffer, self._sending = self._sending, None
-        self._note_errors()
-        self._raise(MERRF)
+        self.flags.note_errors()
+        self.flags.set(MERRF)
         if buffer is not None:
             control = self.registers[regs.CANCTRL]
             self._flag(buffer, TXERR | (ABTF if control & ABAT else 0))
@@ -174,30 +148,17 @@ class Mcp2515Can:
 
     def heard(self, frame: Frame) -> None:
         """Put a frame into the buffer whose filters let it pass, or note that this one is full."""
-        self._note_errors()
-        flags = self.registers[regs.CANINTF]
-        verdict = choose(self.registers, frame, (bool(flags & RX0IF), bool(flags & RX1IF)))
-        if verdict is None:
-            return
-        if verdict.overflow:
-            self.registers[regs.EFLG] |= RX1OVR if verdict.buffer else RX0OVR
-            self._tell()
-            return
-        at = regs.RX[verdict.buffer]
-        hit_bits = 7 if verdict.buffer else 1
-        remote = RXRTR if frame.remote else 0
-        self.registers[at] = self.registers[at] & ~(hit_bits | RXRTR) | verdict.filter & hit_bits | remote
-        regs.store_frame(self.registers, at, frame)
-        self._raise(RX1IF if verdict.buffer else RX0IF)
+        self.flags.note_errors()
+        self.flags.set(receive(self.registers, frame))
 
     def garbled(self) -> None:
         """Note a damaged frame."""
-        self._note_errors()
-        self._raise(MERRF)
+        self.flags.note_errors()
+        self.flags.set(MERRF)
 
     def recovered(self) -> None:
         """Be error-active again."""
-        self._note_errors()
+        self.flags.note_errors()
 
     def _store_request(self, buffer: int, value: int) -> None:
         """Take TXBnCTRL: the priority, and a request or its withdrawal, which leaves a frame on the wire alone."""
@@ -232,7 +193,7 @@ class Mcp2515Can:
         self.bit_ns = self._bit_time_ns() if mode in (NORMAL, LISTEN_ONLY) else 0
         if mode in (CONFIGURATION, LISTEN_ONLY):
             self.errors.reset()
-        self._note_errors()
+        self.flags.note_errors()
         self.wire.request()
         self._loop()
 
@@ -278,33 +239,3 @@ class Mcp2515Can:
         """Take a request back; with the last one a mode may be reached that waits for it."""
         self.registers[regs.TX[buffer]] &= ~TXREQ
         self._change_mode()
-
-    def _interrupt_code(self) -> int:
-        pending = self.registers[regs.CANINTE] & self.registers[regs.CANINTF]
-        return next((code for code, flag in enumerate(CODES, 1) if pending & flag), 0)
-
-    def _raise(self, flags: int) -> None:
-        self.registers[regs.CANINTF] |= flags
-        self._tell()
-
-    def _tell(self) -> None:
-        if self.registers[regs.EFLG] & ~EWARN:
-            self.registers[regs.CANINTF] |= ERRIF
-        if self._level != self.int_level():
-            self._level = self.int_level()
-            self._interrupted()
-
-    def _note_errors(self) -> None:
-        """Bring EFLG up to the counters."""
-        transmit, receive = self.errors.transmit, self.errors.receive
-        rows = (
-            (TXBO, self.errors.bus_off),
-            (TXEP, transmit > PASSIVE_ABOVE),
-            (RXEP, receive > PASSIVE_ABOVE),
-            (TXWAR, transmit >= WARNING),
-            (RXWAR, receive >= WARNING),
-            (EWARN, max(transmit, receive) >= WARNING),
-        )
-        flags = sum(flag for flag, holds in rows if holds)
-        self.registers[regs.EFLG] = self.registers[regs.EFLG] & (RX0OVR | RX1OVR) | flags
-        self._tell()

@@ -2,15 +2,30 @@
 
 Microchip DS20001801J, section 4.5 and the flow chart of figure 4-3; the modes RXM = 01 and 10 are those of revisions
 up to G (register 4-1), which the newest calls reserved. ASSUMED: with the filters off (RXM = 11) FILHIT names the
-buffer's first filter.
+buffer's first filter; data bytes that a frame does not have are not compared.
 """
 
 from dataclasses import dataclass
 
 from hil_sim.devices.canframe import Frame
-from hil_sim.devices.mcp2515registers import EXIDE, FILTERS, MASKS, RX, identifier_bytes
+from hil_sim.devices.mcp2515flags import RX0IF, RX0OVR, RX1IF, RX1OVR
+from hil_sim.devices.mcp2515registers import (
+    CANINTF,
+    DLC,
+    EFLG,
+    EXIDE,
+    FILTERS,
+    MASKS,
+    RTR,
+    RX,
+    SIDL,
+    SRR,
+    identifier_bytes,
+    store_frame,
+)
 
-BUKT = 0x04
+BUKT, RXRTR = 0x04, 0x08
+ROLLED_OVER = 6
 ANY, EXTENDED_ONLY, STANDARD_ONLY = 3, 2, 1
 FILTERS_OF = ((0, 1), (2, 3, 4, 5))
 
@@ -22,6 +37,37 @@ class Verdict:
     buffer: int
     filter: int
     overflow: bool = False
+
+
+def receive(registers: bytearray, frame: Frame) -> int:
+    """Put a frame into the buffer that takes it and return that one's interrupt flag, 0 when none does."""
+    flags = registers[CANINTF]
+    verdict = choose(registers, frame, (bool(flags & RX0IF), bool(flags & RX1IF)))
+    if verdict is None:
+        return 0
+    if verdict.overflow:
+        registers[EFLG] |= RX1OVR if verdict.buffer else RX0OVR
+        return 0
+    at = RX[verdict.buffer]
+    hit_bits = 7 if verdict.buffer else 1
+    remote = RXRTR if frame.remote else 0
+    registers[at] = registers[at] & ~(hit_bits | RXRTR) | verdict.filter & hit_bits | remote
+    store_frame(registers, at, frame)
+    return RX1IF if verdict.buffer else RX0IF
+
+
+def rx_status(registers: bytearray) -> int:
+    """Return what RX STATUS answers, figure 12-9: the buffers that are full, and the first one's message."""
+    full = registers[CANINTF] & (RX0IF | RX1IF)
+    if not full:
+        return 0
+    at = RX[0 if full & RX0IF else 1]
+    hit = registers[at] & (1 if full & RX0IF else 7)
+    rolled_over = 0 if full & RX0IF or hit > 1 else ROLLED_OVER
+    low, length = registers[at + SIDL], registers[at + DLC]
+    extended = bool(low & EXIDE)
+    remote = bool(length & RTR if extended else low & SRR)
+    return full << 6 | extended << 4 | remote << 3 | hit + rolled_over
 
 
 def choose(registers: bytearray, frame: Frame, full: tuple[bool, bool]) -> Verdict | None:
