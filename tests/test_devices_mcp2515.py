@@ -268,6 +268,25 @@ def test_load_tx_buffer_begins_at_the_identifier_or_at_the_data(live):
     }  # fmt: skip
 
 
+def test_the_buffers_are_at_the_addresses_of_the_register_map(rig):
+    for buffer, at in enumerate((0x31, 0x41, 0x51)):
+        rig.load(buffer, Frame(0x100 + buffer, bytes(range(buffer, buffer + 8))))
+        assert rig.read(at, 5) == [0x20, buffer << 5, 0, 0, 8]
+        assert rig.read(at + 5, 8) == list(range(buffer, buffer + 8))
+
+
+@pytest.mark.parametrize("bit", range(29))
+def test_every_bit_of_an_extended_identifier_is_sent(live, bit):
+    number = 1 << bit
+    base, low = number >> 18, number & 0x3FFFF
+
+    live.say(0x40, base >> 3, base << 5 & 0xE0 | 0x08 | low >> 16, low >> 8 & 0xFF, low & 0xFF, 0)
+    live.say(0x81)
+    live.run_us(400)
+
+    assert live.stations[0].received == [Frame(number, extended=True)]
+
+
 def test_priority_decides_the_order_and_then_the_buffers_number(live):
     live.stations[0].send(Frame(0x001))  # keeps the wire busy while the requests are made
     live.run_us(10)

@@ -48,6 +48,13 @@ def test_a_standard_frame_is_laid_out_in_the_buffer(live):
     assert buffer(live, 0)[:7] == [0xB4, 0x60, 0, 0, 2, 1, 2]
 
 
+def test_both_buffers_are_at_the_addresses_of_the_register_map(live):
+    hear(live, Frame(0x100, b"\x07"), Frame(0x101, b"\x08"))
+
+    assert live.read(0x61, 6) == [0x20, 0x00, 0, 0, 1, 7]
+    assert live.read(0x71, 6) == [0x20, 0x20, 0, 0, 1, 8]
+
+
 def test_an_extended_remote_frame_is_laid_out_in_the_buffer(live):
     hear(live, Frame(0x1ABCDEF5, extended=True, remote=True, length=5))
 

@@ -35,6 +35,13 @@ def test_what_is_no_servo_pulse_moves_nothing(servo, width_us, period_us):
     assert servo.commanded_deg(1_000_000) is None
 
 
+@pytest.mark.parametrize("period_us", [25_000, 3004])
+def test_the_slowest_and_the_fastest_pulses_are_followed(servo, period_us):
+    servo.pulsed(0, 1500, period_us)
+
+    assert servo.commanded_deg(1500) == pytest.approx(0)
+
+
 def test_a_pulse_is_known_at_its_end(servo):
     servo.pulsed(0, 1500, FRAME_US)
     servo.pulsed(20_000, 2000, FRAME_US)
@@ -59,6 +66,23 @@ def test_a_servo_goes_limp_100_ms_after_its_last_pulse(servo):
 
     assert servo.commanded_deg(139_999) == pytest.approx(0)
     assert servo.commanded_deg(140_000) is None
+
+
+def test_pulses_that_come_again_in_time_keep_a_servo_where_it_is(servo):
+    servo.pulsed(0, 1500, FRAME_US)
+    servo.pulsed(20_000, 0, FRAME_US)
+    servo.pulsed(100_000, 1500, FRAME_US)
+
+    assert servo.commanded_deg(119_999) == pytest.approx(0)
+    assert servo.commanded_deg(120_001) == pytest.approx(0)
+
+
+def test_a_pulse_that_was_measured_counts_although_another_follows(servo):
+    servo.pulsed(0, 1000, FRAME_US)
+    servo.pulsed(1000, 2000, FRAME_US)
+
+    assert servo.commanded_deg(1000) == pytest.approx(-45)
+    assert servo.commanded_deg(3000) == pytest.approx(45)
 
 
 def test_two_changes_within_a_frame_leave_the_last(servo):

@@ -1,9 +1,9 @@
 """Fault confinement of one CAN controller: its two error counters and what they forbid it.
 
-Rules of the Bosch CAN specification 2.0 (1991), part B, section 8, those that a whole-frame wire can tell apart: a
-failed transmission counts 8, a damaged reception 1 (9 for who damages it with its own error flag), a success takes 1
-back; beyond 127 a controller is error-passive, beyond 255 bus-off. An error-passive sender whom nobody acknowledges
-counts no further: a lone controller repeats for ever and never goes bus-off.
+Bosch, CAN Specification 2.0, 1991, section 8 (part A, page 24; part B, page 61), the rules that a whole-frame wire can
+tell apart: a failed transmission counts 8, a damaged reception 1 (9 for who damages it with its own error flag), a
+success takes 1 back; beyond 127 a controller is error-passive, beyond 255 bus-off. An error-passive sender whom nobody
+acknowledges counts no further: a lone controller repeats for ever and never goes bus-off.
 """
 
 PASSIVE_ABOVE, OFF_ABOVE, WARNING = 127, 255, 96

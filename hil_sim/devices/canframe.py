@@ -1,7 +1,8 @@
 """A classic CAN frame and the bits it is on the wire.
 
-Fields, stuffing and checksum are those of the Bosch CAN specification 2.0, part B, 1991 (sections 3.1, 4 and 5), as
-data sheets of controllers print them (Microchip DS20001801J, figures 2-1 to 2-3).
+Fields, stuffing and checksum are standard results (ISO 11898-1; Bosch, CAN Specification 2.0, 1991, part B). Held
+against the 44 bits of a remote frame that figure 2-5 of Microchip's DS20001801J counts, and against the check value
+that catalogues print for CRC-15/CAN.
 
     frame = Frame(0x123, b"\\x01\\x02")
     len(stuffed(head(frame))) + TAIL_BITS  # how long it is

@@ -1,8 +1,8 @@
 """One frame on a CAN wire: who sends it, who hears it, who cannot, and how it ends.
 
-Error frames of the Bosch CAN specification 2.0 (1991), part B, section 3.1.3. ASSUMED: bit rates within 1.7 % of each
-other understand each other (Microchip DS20001801J, 5.4, the variation that it allows between oscillators); another
-rate is found out after 12 bits, and who finds it out destroys the frame.
+Who signals an error, and when, is in Bosch's CAN Specification 2.0, 1991, part B, section 7.2. ASSUMED: bit rates
+within 1.7 % of each other understand each other (Microchip DS20001801J, 5.4, the variation that it allows between
+oscillators); another rate is found out after 12 bits, and who finds it out destroys the frame.
 """
 
 from collections.abc import Iterable

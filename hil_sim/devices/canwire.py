@@ -1,7 +1,8 @@
 """A CAN bus on the virtual clock: arbitration, bit times, acknowledgement, error frames, recovery from bus-off.
 
 A frame occupies the wire for as many bit times as it has, stuffed bits counted; what comes of it is told to every node
-at its end. Frames of the Bosch CAN specification 2.0 (canframe.py), counters of its section 8 (canerrors.py).
+at its end. Interframe space and the wait of an error-passive sender are those of Bosch's CAN Specification 2.0, 1991,
+part B, page 54.
 
     wire = CanWire(clock)
     wire.join(controller)

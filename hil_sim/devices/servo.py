@@ -35,8 +35,8 @@ class Servo:
         """Pulses of this width and period come from then on; a pulse is known at its end."""
         valid = self._measured(width_us) and 1e6 / RATE_MAX_HZ <= period_us <= 1e6 / RATE_MIN_HZ
         known_us = from_us + round(width_us) if valid else from_us + LIMP_AFTER_US
-        while self._coming and self._coming[-1][0] >= known_us - round(width_us if valid else LIMP_AFTER_US):
-            self._coming.pop()
+        while self._coming and self._coming[-1][0] > from_us:
+            self._coming.pop()  # never measured: its pulse does not come any more
         self._coming.append((known_us, width_us if valid else None))
 
     def commanded_deg(self, now_us: int) -> float | None:
