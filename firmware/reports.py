@@ -49,7 +49,7 @@ class Reports:
         resistance, told = self._core.control.resistance, b""
         for channel in range(self._core.channels.count):
             told += struct.pack(
-                "<HHhh", min(resistance.mohm[channel] // 10, 0xFFFF), resistance.martensite_permille(channel),
+                "<HHhh", resistance.measured_mohm(channel) // 10, resistance.martensite_permille(channel),
                 resistance.least_decidegc(channel), resistance.most_decidegc(channel),
             )  # fmt: skip
         return told

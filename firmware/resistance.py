@@ -14,6 +14,7 @@ from protocol import codes
 OPEN_PERMILLE = 1600  # of the profile's resistance. Phase and stretch make 0.7 to 1.3; two coils in parallel 0.5
 SHORT_PERMILLE = 600
 MOST_MOHM = 999_999  # stands for all above, and for no current at all
+MOST_TOLD_MOHM = 655_350
 SHARE_PERMILLE = 350  # stretch is 2 % of the resistance, the whole change of phase 8 %; the rest is the cosine's
 STRESS_MILLIDEGC = 55_000  # a coil of 0.1 mm wire under 0.5 N is shifted so far, at 6.9 MPa/K
 UNKNOWN = 0xFFFF
@@ -35,6 +36,10 @@ class Resistance:
         """Keep a measurement of a coil that is whole."""
         self.mohm[channel] = mohm
         self._measured[channel] = 1
+
+    def measured_mohm(self, channel: int) -> int:
+        """Return what was measured last, 0 when nothing was."""
+        return min(self.mohm[channel], MOST_TOLD_MOHM) if self._measured[channel] else 0
 
     def refer(self, channel: int, mohm: int) -> None:
         """Take that as the coil's resistance when it is cold, all martensite."""

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from typing import Any, Protocol
 
+from host.coils import CoilState
 from host.errors import NONE, Interrupted, LinkLost, Refused, Silent, SoftrigError
 from host.kept import Fault, FaultPage, Settings
 from host.link import Link
@@ -172,6 +173,13 @@ class Robot:
     def clear_faults(self) -> None:
         """Have the robot forget the faults that it has kept."""
         self._order(messages.CLEAR_FAULTS)
+
+    def coils(self) -> dict[str, CoilState]:
+        """Return what the resistance of each coil says, as it was measured last."""
+        coils = self._order(messages.COILS_REQUEST)
+        if not isinstance(coils, dict):
+            raise LinkLost("the robot answered a request for its coils with something else")
+        return coils
 
     def settings(self) -> Settings:
         """Ask for the robot's settings."""

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from host.coils import CoilState, coils_of
 from host.errors import (
     BadRequest,
     DictionaryMismatch,
@@ -52,7 +53,7 @@ PROBE_MS = 500  # of silence, or without an answer, before hello is said again
 SILENT_MS = 2000
 ANSWER_MS = 5000
 
-Answer = Status | FaultPage | Settings
+Answer = Status | FaultPage | Settings | dict[str, CoilState]
 
 
 class Asked(NamedTuple):
@@ -232,6 +233,10 @@ class Session:
                 self._compare(status.uptime_ms, self._expected_ms(asked.at_ms, SLACK_MS), status.state, now_ms)
         elif kind in (messages.FAULTS.number, messages.SETTINGS.number):
             answer = faults_of(payload, labels) if kind == messages.FAULTS.number else settings_of(payload, labels)
+            seq = payload[0]
+            asked = self._asked.pop(seq, None)
+        elif kind == messages.COILS.number:
+            answer = coils_of(payload, labels)
             seq = payload[0]
             asked = self._asked.pop(seq, None)
         else:

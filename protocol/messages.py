@@ -235,8 +235,8 @@ SETTINGS = Message(
 COILS = Message(
     0x45, "coils",  # Answers `coils_request`: what the resistance of each coil, as measured last, says of it.
     Field("request", "B"),  # Sequence number of the request.
-    Field("channels", "s"),  # Per channel: resistance u16 [10 mohm; 65535: more], martensite u16 [permille; 65535: not
-    # known], temperature at least i16 and at most i16 [0.1 C; -32768 and 32767: no bound].
+    Field("channels", "s"),  # Per channel: resistance u16 [10 mohm; 0: not measured], martensite u16 [permille; 65535:
+    # not known], temperature at least i16 and at most i16 [0.1 C; -32768 and 32767: no bound].
 )  # fmt: skip
 TELEMETRY = Message(
     0x50, "telemetry",  # State of the robot, sent at the subscribed period and not repeated when lost.

