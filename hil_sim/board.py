@@ -141,6 +141,7 @@ class Board:
         """Reset the pins and the processor's own peripherals; the chips keep their state."""
         self.journal.note(self.clock.now_us, RESET, cause, b"")
         self.gpio.reset()
+        self.spi.look()
         self.pulses.reset()
         self.uart.close(self.clock.now_us)
 

@@ -5,7 +5,7 @@ import pytest
 from hil_sim.clock import Clock
 from hil_sim.devices.pwm import PwmSlices
 from hil_sim.devices.servo import Servo
-from hil_sim.journal import Journal
+from hil_sim.journal import KINDS, Journal
 
 FRAME_US = 20_000.0
 
@@ -104,3 +104,49 @@ def test_a_new_level_is_taken_over_when_the_counter_wraps():
     slices.connect(8)
 
     assert told == [(40_000, pytest.approx(1500), pytest.approx(20_000))]
+
+
+@pytest.fixture
+def driven():
+    """A pin that is driven with 1.5 ms in 20 ms, and what its watcher was told."""
+    told = []
+    slices = PwmSlices(Clock(), Journal(keep=True))
+    slices.watch(8, lambda *pulses: told.append(pulses))
+    counter, _ = slices.of(8)
+    counter.div16, counter.top, counter.levels[0], counter.enabled = 1600, 24_999, 1875, True
+    slices.connect(8)
+    return slices, told
+
+
+@pytest.mark.parametrize("end", [lambda slices: slices.reset(), lambda slices: slices.release(8)])
+def test_a_pin_that_is_let_go_has_no_pulses(driven, end):
+    slices, told = driven
+    assert told[-1][1] == pytest.approx(1500)
+
+    end(slices)
+    count = len(told)
+    slices.changed(9)
+
+    assert told[count - 1][1] == 0
+    assert len(told) == count
+
+
+def test_a_change_of_the_slice_is_told_for_both_of_its_pins(driven):
+    slices, told = driven
+    other = []
+    slices.watch(9, lambda *pulses: other.append(pulses))
+    slices.connect(9)
+
+    slices.of(9)[0].top = 49_999
+    slices.changed(9)
+
+    assert told[-1][2] == other[-1][2] == pytest.approx(40_000)
+
+
+def test_what_a_pin_is_set_to_is_noted(driven):
+    slices, _ = driven
+
+    ((_, kind, pin, data),) = slices._journal.kept()
+
+    assert (KINDS[kind], pin) == ("pwm", 8)
+    assert [int.from_bytes(data[at : at + 4], "little") for at in range(0, 16, 4)] == [1600, 24_999, 1875, 1]

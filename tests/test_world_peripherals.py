@@ -55,6 +55,17 @@ def test_on_other_pins_nothing_answers(tmp_path):
     assert run(tmp_path, SPI_ON_17 + main).said == ["b'\\x00'"]
 
 
+def test_a_reset_ends_an_instruction_that_was_under_way(tmp_path):
+    main = "if reset_cause() == 1:\n cs.value(0)\n spi.write(b'\\x90')\n reset()\nwhile True: time.sleep_ms(5)"
+    bench = bench_of(tmp_path, SPI_ON_17 + main)
+    chip = bench.board.can.can
+    chip.flags.set(1)
+    bench.clock.run_until(BOOT_US + 15_000)
+    bench.close()
+
+    assert not chip.registers[0x2C] & 1
+
+
 def test_a_reset_lets_go_of_the_chip(tmp_path):
     main = "if reset_cause() == 1:\n cs.value(0)\n spi.write(b'\\x02')\n reset()\n" + STATUS
 
