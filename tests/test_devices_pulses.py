@@ -150,3 +150,35 @@ def test_what_a_pin_is_set_to_is_noted(driven):
 
     assert (KINDS[kind], pin) == ("pwm", 8)
     assert [int.from_bytes(data[at : at + 4], "little") for at in range(0, 16, 4)] == [1600, 24_999, 1875, 1]
+
+
+@pytest.mark.parametrize(
+    ("pin", "index", "channel"), [(0, 0, 0), (1, 0, 1), (15, 7, 1), (16, 0, 0), (21, 2, 1), (29, 6, 1)]
+)
+def test_pins_belong_to_slices_as_on_the_rp2040(pin, index, channel):
+    slices = PwmSlices(Clock(), Journal())
+
+    assert slices.of(pin) == (slices.slices[index], channel)
+
+
+def test_a_level_beyond_the_top_is_always_on(driven):
+    slices, told = driven
+    slices.of(8)[0].levels[0] = 0xFFFF
+
+    slices.changed(8)
+
+    assert told[-1][1] == told[-1][2] == pytest.approx(20_000)
+
+
+def test_a_counter_wraps_on_its_own_grid():
+    clock, told = Clock(), []
+    slices = PwmSlices(clock, Journal())
+    slices.watch(8, lambda *pulses: told.append(pulses[0]))
+    clock.run_until(7_000)
+    counter, _ = slices.of(8)
+    counter.div16, counter.top, counter.enabled, counter.begun_us = 1600, 24_999, True, 7_000
+    clock.run_until(30_000)
+
+    slices.connect(8)
+
+    assert told == [47_000]
