@@ -7,6 +7,7 @@ made from it. Times count from the instant of the fault; `why` says what they ar
 from dataclasses import dataclass
 
 STEP_MS = 5
+BUS_MS = 25  # from an access to the bus to the next: after a measurement the averages are not read for four steps
 SLOT_MS = 320  # between two measurements of coils that are on
 CHECK_MS = 325  # between two looks at the chips' settings, and the step of the second try
 LEASE_MS = 505  # and one step
@@ -134,8 +135,8 @@ ROWS = (
     ),
     Row("supply-sag:5", TWO, "", *GOES_ON, "Within the limits of the profile."),
     Row(
-        "supply-sag:30", TWO, "F07", 140, "fault", "clear, mend",
-        "A low supply must last 100 ms to be believed; the voltage is read every 20 ms.", "F07",
+        "supply-sag:30", TWO, "F07", 165, "fault", "clear, mend",
+        "A low supply must last 100 ms to be believed; the voltage is read every 20 ms, seldom later.", "F07",
     ),
     Row("supply-sag:100", BEFORE, "F07", PULSES_MS, "refused", "replace", "The self-test reads the voltage.", "F07"),
     Row("brown-out", TWO, "", 0, "link lost", "mend", "Without a supply nothing drives a MOSFET."),
@@ -157,17 +158,17 @@ ROWS = (
         "After 1 s it reads what no board has. A slow drift is believed: it shifts the estimates of the coils with it.",
     ),
     Row("i2c-nack:1", TWO, "", *GOES_ON, "A step in which a chip does not answer is run once more."),
-    Row("i2c-nack:20", TWO, "F08", 2 * STEP_MS, "fault", "clear", "The second try fails, too."),
+    Row("i2c-nack:20", TWO, "F08", BUS_MS + STEP_MS, "fault", "clear", "The second try fails, too."),
     Row(
         "i2c-bit-error:1", TWO, ANY, None, "done or fault", "clear",
         "A wrong reading may trip; a wrong write is found by its current or by its settings.",
     ),
     Row(
-        "i2c-bit-error:200", TWO, ANY, 100, "fault", "clear",
+        "i2c-bit-error:200", TWO, ANY, 300, "fault", "clear",
         "A wrong reading trips; so do settings that are not as they should be.",
     ),
     Row(
-        "i2c-stuck", TWO, "F08", 3 * STEP_MS, "fault", "mend, clear",
+        "i2c-stuck", TWO, "F08", BUS_MS + STEP_MS, "fault", "mend, clear",
         "Two tries, whose transfers end by their time-out of 1 ms; then the contactor opens.",
     ),
     Row(
@@ -178,7 +179,10 @@ ROWS = (
         "pwm-forgets", TWO, "F08", 0, "fault", "clear",
         "A chip that was reset sleeps; it is told when its settings are read.",
     ),
-    Row("monitor-dead", TWO, "F08", 3 * STEP_MS, "fault", "mend, clear", "It is read in almost every step."),
+    Row(
+        "monitor-dead", TWO, "F08", BUS_MS + STEP_MS, "fault", "mend, clear",
+        "It is read in every other step, but for 20 ms after a measurement.",
+    ),
     Row("monitor-forgets", TWO, "F08", CHECK_MS, "fault", "clear", "Its settings are read every 64 steps."),
     Row("imu-dead", IDLE, "", *GOES_ON, "The robot tells that it has lost it (`lost`, F17).", robot="sphere-a"),
     Row(
@@ -194,7 +198,10 @@ ROWS = (
         "The monostable falls 50 ms after the last heartbeat; the watchdog resets after 200 ms.",
     ),
     Row("hang:receive", TWO, "F12", MONOSTABLE_MS + STEP_MS, "fault", "clear", "As above, from the task's turn on."),
-    Row("hang:control", TWO, "F12", MONOSTABLE_MS + STEP_MS, "fault", "clear", "As above."),
+    Row(
+        "hang:control", TWO, "F12", MONOSTABLE_MS + BUS_MS, "fault", "clear",
+        "As above: the task's turn is the next access to the bus.",
+    ),
     Row("hang:send", TWO, "F12", MONOSTABLE_MS + 60, "fault", "clear", "As above; telemetry is sent every 50 ms."),
     Row("reset", TWO, "F12", 0, "fault", "clear", "PWR_EN rests low: the contactor opens."),
     Row(
@@ -205,9 +212,9 @@ ROWS = (
     Row("line-lose:2", TWO, "", *GOES_ON, "As above."),
     Row("line-double:5", TWO, "", *GOES_ON, "As above."),
     Row("line-delay:50", TWO, "", *GOES_ON, "Shorter than the lease."),
-    Row("line-flip:500", TWO, "", LEASE_MS, "link lost", "mend", "No frame is whole: the lease runs out (F03)."),
-    Row("line-lose:500", TWO, "", LEASE_MS, "link lost", "mend", "As above."),
-    Row("line-double:500", TWO, "", LEASE_MS, "link lost", "mend", "As above."),
+    Row("line-flip:900", TWO, "", LEASE_MS, "link lost", "mend", "No frame is whole: the lease runs out (F03)."),
+    Row("line-lose:900", TWO, "", LEASE_MS, "link lost", "mend", "As above."),
+    Row("line-double:900", TWO, "", LEASE_MS, "link lost", "mend", "As above."),
     Row("line-delay:2000", TWO, "", LEASE_MS, "link lost", "mend", "The lease runs out (F03) before a frame arrives."),
     Row("line-baud:57600", TWO, "", LEASE_MS, "link lost", "mend", "Noise in place of bytes: the lease runs out."),
     Row("cable-cut", TWO, "", LEASE_MS, "link lost", "mend", "The lease runs out (F03)."),
