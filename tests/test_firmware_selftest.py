@@ -200,3 +200,11 @@ def test_an_alert_is_a_fault_in_any_state(rig):
     assert rig.core.code == codes.ALERT
     rig.say(messages.CLEAR)
     assert rig.core.state == messages.IDLE
+
+
+def test_the_clock_does_not_begin_anew_in_the_middle_of_it(rig):
+    in_the_middle(rig)
+
+    rig.core.now_ms = (1 << 29) + 1
+
+    assert not rig.core.may_restart()
