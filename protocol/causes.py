@@ -12,6 +12,7 @@ Code = namedtuple("Code", ("number", "name", "unit", "cause", "did", "todo"))
 
 NOTHING = "Nothing changed."
 ALL_OFF = "All coils off, latched until clear."
+FOUND = "Before arming: refused, everything off. While armed: all coils off, latched until clear."
 
 CODES = (
     Code(
@@ -233,7 +234,7 @@ CODES = (
     Code(
         codes.STRAY_CURRENT, "F13", "mA",
         "Current flows although every coil is off.",
-        "Coil supply switched off, latched.",
+        "Before arming: refused. Else latched. The coil supply is switched off.",
         "A MOSFET is stuck: replace it.",
     ),
     Code(
@@ -263,19 +264,19 @@ CODES = (
     Code(
         codes.COIL_OPEN, "F18", "mohm",
         "A coil's resistance is above its band: its wire or a contact is open.",
-        ALL_OFF,
+        FOUND,
         "Mend the coil, or arm with `--without COIL`: it is passed over then.",
     ),
     Code(
         codes.COIL_SHORT, "F19", "mohm",
         "A coil's resistance is below its band: it is shorted, or another coil is on beside it.",
-        ALL_OFF,
-        "Mend the coil or its MOSFET; `--without COIL` only passes over the coil.",
+        FOUND,
+        "Mend it, or arm with `--without COIL`: it is passed over then.",
     ),
     Code(
         codes.CONTACTOR, "F20", "mA",
         "Current flows although the coil supply is switched off: its switch is welded or bridged.",
-        ALL_OFF,
+        "Refused to arm, everything off.",
         "Disconnect the supply by hand and replace the switch behind PWR_EN.",
     ),
     Code(
