@@ -3,6 +3,7 @@
 import pytest
 
 from hil_sim.devices.canframe import Frame, length_bits
+from hil_sim.devices.mcp2515 import Mcp2515
 from tests.can_bench import (
     CANCTRL,
     CANINTE,
@@ -419,6 +420,37 @@ def test_a_sleeping_chip_does_not_wake_unless_that_is_enabled(rig):
     rig.modify(CANINTF, 0x40, 0x40)
 
     assert rig.mode() == LISTEN_ONLY
+
+
+def test_two_chips_acknowledge_each_other():
+    one = CanRig(stations=0).start()
+    other = Mcp2515(one.clock, one.wire)
+    one.run_us(16)
+    for data in ((0x02, CNF3, 0x02, 0x90, 0x00), (0x02, 0x60, 0x64), (0x02, CANCTRL, NORMAL)):
+        other.select(True)
+        for byte in data:
+            other.exchange(byte)
+        other.select(False)
+
+    one.send(FRAME)
+    one.run_us(1000)
+
+    assert (one.get(TEC), one.get(CANINTF)) == (0, 0x04)
+    assert other.can.flags.level() == 1
+    assert other.can.load(CANINTF) == 0x01
+
+
+def test_a_dead_chip_is_off_the_bus_and_silent(live):
+    live.write(CANINTE, 0xFF)
+    live.write(CANINTF, 0xFF)
+
+    live.chip.alive = False
+    live.stations[0].send(FRAME)
+    live.run_us(5000)
+
+    assert live.get(CANSTAT) == 0
+    assert live.chip.int_level() == 1
+    assert live.stations[0].errors.passive
 
 
 def test_an_interrupt_may_be_raised_by_writing_its_flag(rig):

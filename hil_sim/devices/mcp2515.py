@@ -37,13 +37,23 @@ class Mcp2515:
     def __init__(
         self, clock: Clock, wire: CanWire, crystal_hz: int = 8_000_000, interrupted: Callable[[], None] = lambda: None
     ) -> None:
-        self.alive = True
+        self._alive = True
         self.can = Mcp2515Can(clock, wire, crystal_hz, interrupted)
         self._clock = clock
         self._start_us = -(-START_CLOCKS * 1_000_000 // crystal_hz)
         self._selected = False
         self._heard: list[int] = []  # the bytes of the present instruction
         self._deaf_until_us = clock.now_us + self._start_us
+
+    @property
+    def alive(self) -> bool:
+        """Whether it works; one that does not is off the bus and answers nothing."""
+        return self._alive
+
+    @alive.setter
+    def alive(self, alive: bool) -> None:
+        self._alive = alive
+        self.reset()
 
     def reset(self) -> None:
         """Begin anew, as a power cycle does."""
@@ -59,7 +69,7 @@ class Mcp2515:
 
     def exchange(self, byte: int) -> int:
         """Take one byte while selected and return the one that is clocked out meanwhile."""
-        if not (self._selected and self.alive) or self._clock.now_us < self._deaf_until_us:
+        if not (self._selected and self._alive) or self._clock.now_us < self._deaf_until_us:
             return FLOATING
         self._heard.append(byte)
         said = self._say(self._heard[0], len(self._heard) - 1)
@@ -68,7 +78,7 @@ class Mcp2515:
 
     def int_level(self) -> int:
         """Return the level of the INT pin."""
-        return self.can.flags.level() if self.alive else 1
+        return self.can.flags.level() if self._alive else 1
 
     def _say(self, instruction: int, place: int) -> int:
         """Return what is clocked out under the byte at `place`, 0 being the instruction."""
