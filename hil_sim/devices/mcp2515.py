@@ -52,6 +52,7 @@ class Mcp2515:
 
     @alive.setter
     def alive(self, alive: bool) -> None:
+        """Let it die, or be replaced by a new one."""
         self._alive = alive
         self.reset()
 
