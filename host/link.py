@@ -1,7 +1,7 @@
 """Lines to a robot: one interface, whatever carries the bytes.
 
 An address is opened by the scheme before its first colon, found among the entry points `softrig.links`; an address
-without a scheme is a serial port. This is the only file of the host side that reads the wall clock or waits.
+without a scheme is a serial port. Only this file and deploy/console.py read the wall clock or wait on the host side.
 
     link = open_link("/dev/ttyACM0")
     link.write(b"...")

@@ -34,6 +34,7 @@ COMMANDS = {
     "check": "Prove a script against the limits of its robot.",
     "run": "Check a script, run it, watch and report.",
     "explain": "Explain an error, refusal or fault code.",
+    "deploy": "Put the firmware on a board and keep it once it is healthy.",
     "log": "Look into logs: info, export, plot.",
     "figure": "Draw a figure of the paper from the bench.",
 }
