@@ -9,6 +9,7 @@ from array import array
 
 BOARD_MIN_DECIDEGC = -200  # what a thermistor in order reads on a board in use
 BOARD_MAX_DECIDEGC = 850
+AMBIENT_LEAST_DECIDEGC = 200  # the estimates reckon with no colder air: a thermistor may have drifted
 STALE_STEPS = 4  # after a sense slot: then the second conversion, of 9.8 ms, has ended
 
 
@@ -20,7 +21,7 @@ class Sense:
         self.current_ma = 0
         self.current_fresh = False  # whether it was read in this control step
         self.board_decidegc = 250  # as read: the guard judges it
-        self._ambient_decidegc = 250  # the last reading that can be
+        self._ambient_decidegc = 250  # the last reading that can be, or the least that is believed
         self.temperature_millidegc = array("i", [25_000] * count)  # cold, until power or a reset says otherwise
         self.heat_uj = array("i", [0] * count)  # taken and not yet leaked away
         self.hottest = -1  # among the coils that are on, the one with the highest estimate; -1: none is on
@@ -109,7 +110,7 @@ class Sense:
     def _read_board(self) -> None:
         self.board_decidegc = self._board.board_decidegc() + self.board_offset_decidegc
         if BOARD_MIN_DECIDEGC <= self.board_decidegc <= BOARD_MAX_DECIDEGC:
-            self._ambient_decidegc = self.board_decidegc
+            self._ambient_decidegc = max(self.board_decidegc, AMBIENT_LEAST_DECIDEGC)
 
     def _read_supply(self) -> None:
         self.supply_mv = self._monitor.voltage_mv()

@@ -155,7 +155,7 @@ ROWS = (
     Row("thermistor-short", TWO, "F09", CHECK_MS, "fault", "mend, clear", "As above."),
     Row(
         "thermistor-drift:60", TWO, "F09", 1000 + CHECK_MS, "fault", "mend, clear",
-        "After 1 s it reads what no board has. A slow drift is believed: it shifts the estimates of the coils with it.",
+        "After 1 s it reads what no board has. A slow drift is believed; less than 20 C counts as 20 C in the estimates.",
     ),
     Row("i2c-nack:1", TWO, "", *GOES_ON, "A step in which a chip does not answer is run once more."),
     Row("i2c-nack:20", TWO, "F08", BUS_MS + STEP_MS, "fault", "clear", "The second try fails, too."),

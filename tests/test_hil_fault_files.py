@@ -1,6 +1,9 @@
 """Planned faults on the whole path: a line that is bad for a while, and what two faults together do."""
 
+import pytest
+
 from host.robot import Robot
+from tests.invariants import TRIP_MARGIN_K
 
 MONOSTABLE_S = 0.05
 
@@ -67,3 +70,16 @@ def test_the_same_file_gives_the_same_run_and_another_seed_another(faulty):
         traces.append(rig.bench.trace_sha256())
 
     assert traces[0] == traces[1] != traces[2]
+
+
+@pytest.mark.parametrize(("robot", "label"), [("circular", "A"), ("sphere-b", "A100")])
+def test_a_thermistor_that_drifts_to_the_cold_side_heats_no_coil_beyond_its_trip(faulty, robot, label):
+    """The estimates stand on the board's temperature: read 40 K too low, it would let a coil become 35 K too hot."""
+    rig = faulty(("thermistor-drift:-2", 100), robot=f"sim:{robot}?body=still")
+    rig.run_alone(seconds=19)
+
+    rig.fire(label, duty_percent=100, hold_s=5)
+    rig.run(seconds=5)
+
+    assert rig.robot.status().board_degc < 0
+    assert rig.bench.coil(label).peak_degc <= rig.robot.profile.coil.trip_degc + TRIP_MARGIN_K
