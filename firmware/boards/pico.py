@@ -14,6 +14,12 @@ from firmware.drivers.lsm6ds3tr import Lsm6ds3tr
 from firmware.drivers.ntc import decidegc
 from firmware.drivers.pca9685 import Pca9685
 
+# GP numbers; docs/hardware.md has what each is wired to. boot.py and main.py, which import nothing, repeat five of them.
+TX, RX, PWR_EN, HEARTBEAT, SDA, SCL, ESTOP_SENSE, ALERT = 0, 1, 2, 3, 4, 5, 6, 7
+SERVOS = (8, 9, 10)
+MISO, CAN_SELECT, SCK, MOSI, CAN_INTERRUPT = 16, 17, 18, 19, 20
+STRAP, THERMISTOR = 22, 26
+MONITOR = 0x40
 WATCHDOG_MS = 200
 WRITING_MS = 2000  # the flash erases a sector in 45 ms, at worst in 400 ms (W25Q16JV), and a file may take two
 BAUD = 115_200
@@ -24,15 +30,15 @@ class Board:
     """The hardware as the core sees it: a supply switch, a heartbeat, PWM outputs, sensors and a serial line."""
 
     def __init__(self) -> None:
-        self._power = Pin(2, Pin.OUT, value=0)
-        self._heartbeat = Pin(3, Pin.OUT, value=0)
-        self._estop = Pin(6, Pin.IN, Pin.PULL_DOWN)
-        self._alert = Pin(7, Pin.IN, Pin.PULL_UP)
+        self._power = Pin(PWR_EN, Pin.OUT, value=0)
+        self._heartbeat = Pin(HEARTBEAT, Pin.OUT, value=0)
+        self._estop = Pin(ESTOP_SENSE, Pin.IN, Pin.PULL_DOWN)
+        self._alert = Pin(ALERT, Pin.IN, Pin.PULL_UP)
         self._beat = 0
-        self._bus = I2C(0, scl=Pin(5), sda=Pin(4), freq=400_000, timeout=1000)
-        self._uart = UART(0, baudrate=BAUD, tx=Pin(0), rx=Pin(1), txbuf=BUFFER_BYTES, rxbuf=BUFFER_BYTES)
+        self._bus = I2C(0, scl=Pin(SCL), sda=Pin(SDA), freq=400_000, timeout=1000)
+        self._uart = UART(0, baudrate=BAUD, tx=Pin(TX), rx=Pin(RX), txbuf=BUFFER_BYTES, rxbuf=BUFFER_BYTES)
         self._quiet_ms = time.ticks_ms()  # when the line will have sent all that was written
-        self._thermistor = ADC(Pin(26))
+        self._thermistor = ADC(Pin(THERMISTOR))
         self.watch()
 
     def pwm(self, address: int) -> Pca9685:
@@ -41,7 +47,7 @@ class Board:
 
     def monitor(self, shunt_mohm: int, alert_ma: int) -> Ina226:
         """Return the driver of the monitor of the coil supply, which pulls its alert pin at that current."""
-        return Ina226(self._bus, 0x40, shunt_mohm, alert_ma)
+        return Ina226(self._bus, MONITOR, shunt_mohm, alert_ma)
 
     def imu(self, address: int) -> Lsm6ds3tr:
         """Return the driver of the attitude sensor at that address."""
