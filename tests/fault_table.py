@@ -142,7 +142,8 @@ ROWS = (
     Row("brown-out", TWO, "", 0, "link lost", "mend", "Without a supply nothing drives a MOSFET."),
     Row(
         "power-cycle", TWO, "", 0, "link lost", "clear",
-        "The robot starts anew; its host has lost the session and sends stop (F01).", after="F01",
+        "The robot starts anew; its host has lost the session and sends stop (F01). What it knew of its coils' heat is "
+        "lost: it takes them for cold, so let them cool first.", after="F01",
     ),
     Row(
         "battery-empty", TWO, "", 10, "link lost", "mend",
@@ -155,7 +156,7 @@ ROWS = (
     Row("thermistor-short", TWO, "F09", CHECK_MS, "fault", "mend, clear", "As above."),
     Row(
         "thermistor-drift:60", TWO, "F09", 1000 + CHECK_MS, "fault", "mend, clear",
-        "After 1 s it reads what no board has. A slow drift is believed; less than 20 C counts as 20 C in the estimates.",
+        "After 1 s it reads what no board has. A slow drift is believed; the estimates count less than 20 C as 20 C.",
     ),
     Row("i2c-nack:1", TWO, "", *GOES_ON, "A step in which a chip does not answer is run once more."),
     Row("i2c-nack:20", TWO, "F08", BUS_MS + STEP_MS, "fault", "clear", "The second try fails, too."),
