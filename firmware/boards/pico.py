@@ -14,7 +14,7 @@ from firmware.drivers.lsm6ds3tr import Lsm6ds3tr
 from firmware.drivers.ntc import decidegc
 from firmware.drivers.pca9685 import Pca9685
 
-# GP numbers; docs/hardware.md has what each is wired to. boot.py and main.py, which import nothing, repeat five of them.
+# GP numbers; docs/hardware.md has what each is wired to. boot.py and main.py, which import nothing, repeat five.
 TX, RX, PWR_EN, HEARTBEAT, SDA, SCL, ESTOP_SENSE, ALERT = 0, 1, 2, 3, 4, 5, 6, 7
 SERVOS = (8, 9, 10)
 MISO, CAN_SELECT, SCK, MOSI, CAN_INTERRUPT = 16, 17, 18, 19, 20
