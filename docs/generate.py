@@ -12,7 +12,7 @@ from pathlib import Path
 
 import click
 
-from docs import meanings
+from docs import hardwarepage, meanings, schematic
 from hil_sim import faults
 from host.cli import main as softrig
 from host.gait.errors import ROWS
@@ -69,6 +69,8 @@ def pages() -> Iterator[tuple[str, str]]:
     yield "faults.md", MADE + faults_page()
     yield "limits.md", MADE + limits_page()
     yield "commands.md", MADE + commands_page()
+    yield "hardware.md", MADE + hardware_page()
+    yield "schematic.svg", schematic.svg()
 
 
 def is_fresh(path: Path, page: str) -> bool:
@@ -152,6 +154,12 @@ def codes_page() -> str:
             table(("code", "exit", "cause", "what to do"), script),
         )
     )
+
+
+def hardware_page() -> str:
+    """Return the page of the board: the prose of the template, the tables from the board's file and the profiles."""
+    template = (DOCS / "templates" / "hardware.md").read_text(encoding="utf-8")
+    return template.format(**hardwarepage.fields(ROBOTS, table))
 
 
 def faults_page() -> str:

@@ -1,0 +1,79 @@
+"""The tables of docs/hardware.md: pins, parts, and from the robots' profiles their wiring and power."""
+
+import json
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+
+from docs.board import PINS
+
+FUSES_MA = (500, 1000, 1600, 2000, 3150, 4000, 5000, 6300, 8000, 10_000, 16_000)
+P_MOSFET_MV = 4500  # below it stays open: a relay
+P_MOSFET_MA = 4000
+PARTS = (
+    ("U1", "Raspberry Pi Pico or Pico 2", "1", "MicroPython, 26 pins, a watchdog, flash for two slots."),
+    ("U2, U3", "PCA9685", "1 or 2", "16 outputs of 12 bits, all off by one register; the second from 17 coils on."),
+    ("U4", "INA226, R1 20 mΩ 1 % 1 W", "1", "Current and voltage in one, averaged, and ALERT in hardware."),
+    ("U5", "74HC423", "1", "Retriggerable, and its reset does not trigger; 110 k and 1 µF film: 0.45 R C = 50 ms."),
+    ("U6", "74LVC1G00", "1", "/OE is low only while both are there: monostable and emergency-stop loop."),
+    (
+        "Q1..Q22", "AO3400A", "a coil each",
+        "Logic-level MOSFET: at most 48 mΩ at 2.5 V at the gate (AOS data sheet), a few mV lost. A Darlington "
+        "array (ULN2803) keeps about 1 V for itself: half of the circular robot's 2 V, and heat.",
+    ),
+    ("R, R", "100 Ω, 100 kΩ", "a coil each", "Slows the edge; keeps the gate low while the PWM chip has no supply."),
+    (
+        "Q23 or K1", "AO3401A, or a relay with a 5 V coil", "1",
+        "Opens the supply of all coils. The P-MOSFET wants 4.5 V and carries 4 A; else a relay, a diode over its coil.",
+    ),
+    ("Q24", "AO3400A", "1", "Drives Q23 or K1 from PWR_EN."),
+    ("S1", "Emergency stop, two NC contacts", "1", "One for /OE, one for the supply; neither needs firmware."),
+    ("F1", "Fuse", "1", "See the power budget."),
+    ("NTC", "10 k, B 3950, and 10 k 1 %", "1", "The core's temperature; open and short are seen as such."),
+    ("U7", "MCP2515, crystal 8 MHz, 3.3 V transceiver", "option", "CAN; not driven by this version of the firmware."),
+    ("U8", "LSM6DS3TR-C", "spheres", "Attitude, in the core's axes."),
+    ("", "Isolated USB serial adapter, 3.3 V", "1", "The host's ground must not carry coil current."),
+)  # fmt: skip
+POWER = (
+    "robot", "supply [V]", "one coil [mA]", "at once", "at once [mA]", "limit [mA]", "power [W]", "shunt [mV]",
+    "F1 [A]", "switch",
+)  # fmt: skip
+Table = Callable[[Sequence[str], Iterable[tuple[str, ...]]], str]
+
+
+def fields(robots: Path, table: Table) -> dict[str, str]:
+    """Return what the template of the page leaves open."""
+    profiles = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(robots.glob("*.json"))]
+    profiles = [profile for profile in profiles if any(row["kind"] == "sma" for row in profile["channels"])]
+    return {
+        "pins": table(("GP", "net", ""), [(str(number), net, about) for number, net, about in PINS]),
+        "parts": table(("", "part", "how many", "why"), PARTS),
+        "wiring": table(("robot", "coils"), [(profile["robot"], wiring(profile)) for profile in profiles]),
+        "power": table(
+            POWER,
+            [power(profile) for profile in profiles],
+        ),
+    }  # fmt: skip
+
+
+def wiring(profile: dict) -> str:
+    """Return each coil of a robot with the net of its gate."""
+    rows = [
+        (row["label"], (row["chip"] - 0x60) * 16 + row["output"]) for row in profile["channels"] if row["kind"] == "sma"
+    ]
+    return ", ".join(f"{label} G{gate}" for label, gate in rows)
+
+
+def power(profile: dict) -> tuple[str, ...]:
+    """Return the row of a robot: what it takes from its supply when cold, at full duty."""
+    supply, coil = profile["supply"], profile["coil"]
+    one_ma = profile["supply_mv"] * 1000 // (coil["resistance_mohm"] + coil["wiring_mohm"])
+    together_ma = min(one_ma * supply["at_once_max"], supply["current_max_ma"])
+    limit_ma = supply["current_max_ma"]
+    mosfet = profile["supply_mv"] >= P_MOSFET_MV and limit_ma <= P_MOSFET_MA
+    watts = profile["supply_mv"] * together_ma / 1e6
+    fuse_a = next(fuse for fuse in FUSES_MA if fuse > limit_ma) / 1000
+    return (
+        profile["robot"], f"{profile['supply_mv'] / 1000:g}", str(one_ma), str(supply["at_once_max"]), str(together_ma),
+        str(limit_ma), f"{watts:.1f}", f"{limit_ma * supply['shunt_mohm'] / 1000:.0f}", f"{fuse_a:g}",
+        "Q23" if mosfet else "K1",
+    )  # fmt: skip
