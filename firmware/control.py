@@ -123,7 +123,10 @@ class Control:
         return codes.GUARD if outcome == GUARDED else codes.ATTITUDE if outcome == LOST else 0
 
     def _check_chips(self, now_ms: int, state: int) -> None:
-        """Look in turn whether a chip has lost its settings, as after a brown-out."""
+        """Look in turn whether a chip has lost its settings, as after a brown-out.
+
+        With nothing on, say so again: a write that went astray may have left a coil on too weakly for the guard.
+        """
         self._turn += 1
         if self._turn < CHECK_EVERY or state == messages.TRIPPED:
             return
@@ -132,6 +135,8 @@ class Control:
                 raise OSError(chip.address)
         if not self.monitor.configured():
             raise OSError(self.monitor.address)
+        if not self.channels.on_mask:
+            self.channels.shut()
         self.attitude.check(now_ms)
         self._turn = 0
 

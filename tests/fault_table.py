@@ -162,7 +162,7 @@ ROWS = (
     Row("i2c-nack:20", TWO, "F08", BUS_MS + STEP_MS, "fault", "clear", "The second try fails, too."),
     Row(
         "i2c-bit-error:1", TWO, ANY, None, "done or fault", "clear",
-        "A wrong reading may trip; a wrong write is found by its current or by its settings.",
+        "A wrong reading may trip; what a wrong write does is found or put right within 325 ms.",
     ),
     Row(
         "i2c-bit-error:200", TWO, ANY, 300, "fault", "clear",

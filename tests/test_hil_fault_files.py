@@ -6,6 +6,7 @@ from host.robot import Robot
 from tests.invariants import TRIP_MARGIN_K
 
 MONOSTABLE_S = 0.05
+WRITE_US = 137  # one output's, from its start: six bytes at 400 kHz
 
 
 def test_orders_come_through_a_line_that_spoils_a_byte_in_two_hundred(faulty):
@@ -83,3 +84,21 @@ def test_a_thermistor_that_drifts_to_the_cold_side_heats_no_coil_beyond_its_trip
 
     assert rig.robot.status().board_degc < 0
     assert rig.bench.coil(label).peak_degc <= rig.robot.profile.coil.trip_degc + TRIP_MARGIN_K
+
+
+def fired_weakly(rig):
+    """Return when the only order of a robot ends in an access to the bus, and when its coil went off for good [us]."""
+    rig.fire("A", duty_percent=8, hold_s=0.3)
+    rig.run(seconds=1)
+    return rig.bench.coil("A").history[-1]
+
+
+@pytest.mark.parametrize("seed", [1, 38])
+def test_a_coil_whose_last_write_went_astray_is_off_a_slot_later_however_weak_it_is(faulty, seed):
+    """8 % draw 16 mA, less than is taken for stray current; the error is put on the very write that ends the order."""
+    ends_us, _ = fired_weakly(faulty())
+
+    off_us, duty = fired_weakly(faulty(("i2c-bit-error:1", (ends_us - WRITE_US) / 1000), seed=seed))
+
+    assert duty == 0.0
+    assert off_us - ends_us <= 325_000
