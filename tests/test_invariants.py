@@ -7,29 +7,10 @@ import re
 
 import pytest
 
-from hil_sim.worlds.image import Image
 from host.run import run
 from protocol import frames, program
 from tests.hil_rig import HilRig
-
-
-@pytest.fixture
-def sabotaged(monkeypatch):
-    """Return a function that builds a robot in whose firmware one line reads otherwise."""
-    genuine = Image.installed
-
-    def rig(file: str, line: str, instead: str) -> HilRig:
-        def installed(profile: bytes) -> Image:
-            image = genuine(profile)
-            files = {path: image.read(path) for path in image.paths()}
-            path = next(path for path in files if path.endswith(file))
-            assert files[path].count(line.encode()) == 1, f"{file} has no such line: {line}"
-            return Image({**files, path: files[path].replace(line.encode(), instead.encode())})
-
-        monkeypatch.setattr(Image, "installed", installed)
-        return HilRig("sim:circular?body=still")
-
-    return rig
+from tests.sabotage import sabotage
 
 
 def long_order(rig: HilRig) -> None:
@@ -120,8 +101,9 @@ LOSSES = [
 
 
 @pytest.mark.parametrize(("file", "line", "instead", "deed", "told"), LOSSES)
-def test_an_invariant_is_missed_where_the_firmware_has_lost_it(sabotaged, file, line, instead, deed, told):
-    rig = sabotaged(file, line, instead)
+def test_an_invariant_is_missed_where_the_firmware_has_lost_it(monkeypatch, file, line, instead, deed, told):
+    sabotage(monkeypatch, file, line, instead)
+    rig = HilRig("sim:circular?body=still")
 
     deed(rig)
 
