@@ -2,15 +2,18 @@
 
 While its program runs it is a bench in virtual time, on what stands in the folder; in service mode its console is the
 real MicroPython interpreter (raw_repl.py). The seconds after a reset take none here: what is said then is said again
-for a while, so that a host that opens the port in time hears it.
+whenever it was read, so that a host hears it however late it opens the port.
 
     with FakePico(folder) as pico:
         deploy(pico.port)
 """
 
+import fcntl
 import os
 import pty
+import struct
 import subprocess
+import termios
 import threading
 import tty
 from pathlib import Path
@@ -25,7 +28,6 @@ from tests.slot_bench import said
 SCRIPT = Path(__file__).with_name("raw_repl.py")
 RESET = 42
 SETTLED_S = 60
-REPEATS = 60
 
 
 class FakePico:
@@ -77,18 +79,20 @@ class FakePico:
         if self._found or not (self.folder / "main.py").exists():
             return True
         bench = self._settled()
-        repeats = REPEATS
         while "softrig: service" not in said(bench):
             if self._ended.is_set():
                 return False
-            if repeats:
+            if not self._unread():
                 os.write(self._host, f"{said(bench)[-1]}\r\n".encode())
-                repeats -= 1
             if select([self._host], [], [], 0.05)[0] and b"\x03" in os.read(self._host, 4096):
                 bench.world.interrupt()
                 bench.run(1)
         self._keep(bench)
         return True
+
+    def _unread(self) -> int:
+        """Return how many bytes wait for the host."""
+        return struct.unpack("i", fcntl.ioctl(self._line, termios.FIONREAD, bytes(4)))[0]
 
     def _settled(self) -> Bench:
         """Return a bench on which the program in the folder has become healthy, or was rolled back."""

@@ -169,6 +169,13 @@ def test_the_files_at_the_root_are_replaced_when_they_differ(tmp_path):
     assert not (tmp_path / "boot.py.new").exists()
 
 
+def test_the_robot_is_asked_on_its_own_line_in_the_end(tmp_path):
+    with FakePico(tmp_path) as pico:
+        told = deploy(pico, "--robot", "sim:circular?body=still")
+
+    assert told.splitlines()[-1] == "sim:circular?body=still answers: idle, code none"
+
+
 def test_a_port_that_is_not_there_is_told(tmp_path, monkeypatch):
     monkeypatch.setattr("host.deploy.console.ABSENT_S", 0.0)
 

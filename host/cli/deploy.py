@@ -9,20 +9,23 @@ from pathlib import PurePosixPath
 
 import click
 
+from host.cli.connection import connected
 from host.cli.options import json_option
 from host.cli.output import emit
 from host.deploy.bootrecord import SLOTS
 from host.deploy.console import Console
 from host.deploy.image import Image
 from host.deploy.steps import Progress, carried_out, planned, watched
+from protocol import causes
 
 
 @click.command("deploy")
 @click.option("--port", metavar="PATH", help="The board's console: a Pico's own USB port, such as /dev/ttyACM0.")
 @click.option("--robot-name", required=True, metavar="NAME", help="Whose profile, or the path of one (.json).")
+@click.option("--robot", metavar="ADDRESS", help="The robot's own line: asked in the end whether it answers there.")
 @click.option("--dry-run", is_flag=True, help="List what belongs on the board; without a port, nothing is touched.")
 @json_option
-def command(port: str | None, robot_name: str, dry_run: bool, as_json: bool) -> None:
+def command(port: str | None, robot_name: str, robot: str | None, dry_run: bool, as_json: bool) -> None:
     """Put the firmware on a board, and keep it only once it is healthy.
 
     Copies into the slot that does not run, proves every file by its hash, starts it, and waits until it has been
@@ -48,8 +51,19 @@ def command(port: str | None, robot_name: str, dry_run: bool, as_json: bool) -> 
     if not plan.done:
         watched(port, plan.target)
     fields = {"slot": SLOTS[plan.target], "files": len(image.slot), "copied": len(plan.write), "healthy": True}
+    answer = _answered(robot) if robot else {}
     told = f"slot {SLOTS[plan.target]} runs the firmware of {robot_name}: {len(image.slot)} files, all hashes right"
-    emit(as_json, fields, [f"{told}, {len(plan.write)} copied" if not plan.done else f"{told}; nothing was to be done"])
+    copied = f", {len(plan.write)} copied" if not plan.done else "; nothing was to be done"
+    says = [f"{robot} answers: {answer['state']}, code {answer['code'] or 'none'}"] if robot else []
+    emit(as_json, {**fields, **answer}, [told + copied, *says])
+
+
+def _answered(address: str) -> dict[str, str | None]:
+    """Return what the robot says on its own line; SoftrigError when it does not answer or speaks another version."""
+    with connected(address, watch_only=True) as face:
+        status = face.status()
+    row = causes.row(status.code)
+    return {"state": status.state, "code": row.name if row else None}
 
 
 def _tell_dry(as_json: bool, image: Image, files: dict[str, bytes]) -> None:
