@@ -202,3 +202,17 @@ def test_a_chip_that_is_not_off_trips_the_core():
     core.step(0, b"", 1024)
 
     assert (core.state, core.code) == (messages.TRIPPED, codes.CHIP)
+
+
+@WORLDS
+def test_boot_clocks_a_chip_free_that_holds_the_data_line(execute):
+    """A reset in the middle of a read leaves a chip waiting for its clock, with the data line low."""
+    bench = slot_bench(BOTH, execute=execute)
+    write, clocks = bench.board.gpio.write, []
+    bench.board.gpio.write = lambda pin, level: (clocks.append(level) if pin == 5 else None, write(pin, level))
+    bench.board.gpio.sources[4] = lambda: int(clocks.count(1) >= 3)
+
+    settled(bench)
+
+    assert clocks == [0, 1] * 3
+    assert said(bench)[0] == "a"
