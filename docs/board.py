@@ -24,6 +24,7 @@ WIRES = (
     ("SCK", "SCK", "SPI clock."),
     ("MOSI", "MOSI", "SPI to the CAN controller."),
     ("CAN_INTERRUPT", "/CAN_INT", "Low while the CAN controller has something to say."),
+    ("WARM", "/WARM", "Low for about a minute after the coil supply was closed, power or not: the coils may be warm."),
     ("STRAP", "STRAP", "Bridged to ground at reset: service mode, nothing runs."),
     ("THERMISTOR", "NTC", "Divider of 10 k to 3V3 and the thermistor on the core to ground."),
 )

@@ -24,6 +24,8 @@ def run(loud: int, is_new: bool, settled) -> None:
     try:
         with open(sys.path[0] + "/robot.json", "rb") as file:
             core = Core(board, Profile(file.read()), pico.boot_number(), reset_cause() == WDT_RESET, loud)
+        if board.warm():
+            core.sense.assume_hot()  # the power was gone, and with it what was known of the coils
         loop(board, core, Trial(is_new, settled))
     finally:
         board.power(False)

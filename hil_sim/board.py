@@ -18,13 +18,15 @@ from hil_sim.devices.canwire import CanWire
 from hil_sim.devices.flash import Flash
 from hil_sim.devices.gpio import OUT, Gpio
 from hil_sim.devices.i2c import Bus
-from hil_sim.devices.ina226 import Ina226, Source
+from hil_sim.devices.ina226 import Ina226
+from hil_sim.devices.ina226converter import Source
 from hil_sim.devices.lsm6ds3tr import Lsm6ds3tr, Motion
 from hil_sim.devices.mcp2515 import Mcp2515
 from hil_sim.devices.monostable import Monostable
 from hil_sim.devices.ntc import Ntc
 from hil_sim.devices.pca9685 import Gate, Pca9685
 from hil_sim.devices.pwm import PwmSlices
+from hil_sim.devices.remanence import Remanence
 from hil_sim.devices.servo import Servo
 from hil_sim.devices.spi import SpiBus
 from hil_sim.devices.uart import Uart
@@ -34,6 +36,7 @@ PWR_EN, HEARTBEAT, ESTOP_SENSE, ALERT = 2, 3, 6, 7
 SDA, SCL = 4, 5
 SERVOS = (8, 9, 10)
 MISO, CAN_SELECT, SCK, MOSI, CAN_INTERRUPT = range(16, 21)
+WARM = 21
 THERMISTOR_CHANNEL = 0
 HEARTBEAT_WINDOW_US = 50_000
 PWM_CHIPS = (0x60, 0x61)
@@ -91,7 +94,9 @@ class Board:
         self.spi = SpiBus({CAN_SELECT: self.can}, lambda pin: self.gpio.mode(pin) == OUT and not self.gpio.driven(pin))
         self.pulses = PwmSlices(clock, journal)
         self.servos = {pin: Servo() for pin in SERVOS}
-        self.gpio.watchers[PWR_EN] = lambda _: self._on_change()
+        self.remanence = Remanence(clock)
+        self.gpio.watchers[PWR_EN] = self._on_power
+        self.gpio.sources[WARM] = self.remanence.level
         self.gpio.watchers[HEARTBEAT] = lambda _: self._on_beat()
         self.gpio.sources[ESTOP_SENSE] = lambda: 1 if self.estop_closed else None
         self.gpio.sources[ALERT] = self.monitor.alert_level
@@ -176,6 +181,10 @@ class Board:
     def _on_enable(self) -> None:
         for chip in self.pwm.values():
             chip.enable(self.enabled)
+
+    def _on_power(self, level: int) -> None:
+        self.remanence.feed(level)
+        self._on_change()
 
     def _on_change(self) -> None:
         self.changed()

@@ -142,8 +142,8 @@ ROWS = (
     Row("brown-out", TWO, "", 0, "link lost", "mend", "Without a supply nothing drives a MOSFET."),
     Row(
         "power-cycle", TWO, "", 0, "link lost", "clear",
-        "The robot starts anew; its host has lost the session and sends stop (F01). What it knew of its coils' heat is "
-        "lost: it takes them for cold, so let them cool first.", after="F01",
+        "The robot starts anew; its host has lost the session and sends stop (F01). A capacitor remembers that the "
+        "coil supply was closed: every coil counts as hot until it must have cooled.", after="F01",
     ),
     Row(
         "battery-empty", TWO, "", 10, "link lost", "mend",

@@ -32,6 +32,11 @@ class HilRig:
         self.robot = Robot(self.link)
         self.robot.connect()
 
+    def connect_again(self) -> None:
+        """Greet the robot as a host that was started anew."""
+        self.robot = Robot(self.link)
+        self.robot.connect()
+
     @property
     def now_s(self) -> float:
         """Return the bench's clock."""

@@ -18,7 +18,7 @@ from firmware.drivers.pca9685 import Pca9685
 TX, RX, PWR_EN, HEARTBEAT, SDA, SCL, ESTOP_SENSE, ALERT = 0, 1, 2, 3, 4, 5, 6, 7
 SERVOS = (8, 9, 10)
 MISO, CAN_SELECT, SCK, MOSI, CAN_INTERRUPT = 16, 17, 18, 19, 20
-STRAP, THERMISTOR = 22, 26
+WARM, STRAP, THERMISTOR = 21, 22, 26
 MONITOR = 0x40
 WATCHDOG_MS = 200
 WRITING_MS = 2000  # the flash erases a sector in 45 ms, at worst in 400 ms (W25Q16JV), and a file may take two
@@ -34,6 +34,7 @@ class Board:
         self._heartbeat = Pin(HEARTBEAT, Pin.OUT, value=0)
         self._estop = Pin(ESTOP_SENSE, Pin.IN, Pin.PULL_DOWN)
         self._alert = Pin(ALERT, Pin.IN, Pin.PULL_UP)
+        self._warm = Pin(WARM, Pin.IN, Pin.PULL_UP)
         self._beat = 0
         self._bus = I2C(0, scl=Pin(SCL), sda=Pin(SDA), freq=400_000, timeout=1000)
         self._uart = UART(0, baudrate=BAUD, tx=Pin(TX), rx=Pin(RX), txbuf=BUFFER_BYTES, rxbuf=BUFFER_BYTES)
@@ -69,6 +70,10 @@ class Board:
     def alert(self) -> bool:
         """Return whether the monitor has seen too much current; it has opened the outputs by itself then."""
         return self._alert.value() == 0
+
+    def warm(self) -> bool:
+        """Return whether the coil supply was closed within the last minute or so: asked before it is closed again."""
+        return self._warm.value() == 0
 
     def wait_us(self, time_us: int) -> None:
         """Let time pass within a control step."""
