@@ -26,6 +26,10 @@ PARTS = (
         "Opens the supply of all coils. The P-MOSFET wants 4.5 V and carries 4 A; else a relay, a diode over its coil.",
     ),
     ("Q24", "AO3400A", "1", "Drives Q23 or K1 from PWR_EN."),
+    (
+        "Q25, D1", "2N7002, BAT54, 1 kΩ, 1 MΩ, 100 µF", "1",
+        "Remembers for about a minute, power or not, that the coil supply was closed: a restarted robot may be warm.",
+    ),
     ("S1", "Emergency stop, two NC contacts", "1", "One for /OE, one for the supply; neither needs firmware."),
     ("F1", "Fuse", "1", "See the power budget."),
     ("NTC", "10 k, B 3950, and 10 k 1 %", "1", "The core's temperature; open and short are seen as such."),

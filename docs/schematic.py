@@ -18,6 +18,7 @@ TITLES = (
     ((29.5, -8.3), "5  Output enable: heartbeat, e-stop, over-current"),
     ((29.5, -20.3), "6  Options"),
     ((-2.5, -16.3), "7  Sensing and strap"),
+    ((13.5, -24.2), "8  Memory of warmth, about a minute"),
 )
 
 
@@ -35,6 +36,7 @@ def svg() -> str:
         _enable(drawing)
         _options(drawing)
         _sensing(drawing)
+        _memory(drawing)
     text = drawing.get_imagedata("svg").decode()
     return re.sub(r"<svg ", '<svg style="background:white" ', text, count=1) + "\n"
 
@@ -228,3 +230,23 @@ def _sensing(drawing) -> None:
     _net(drawing, (6.5, -24.5), "STRAP", "left")
     drawing += (jumper := elm.Switch().at((6.5, -24.5)).right().label("J1 service"))
     drawing += elm.Ground().at(jumper.end)
+
+
+def _memory(drawing) -> None:
+    """Draw what tells a robot that may be hot from a cold one, though its power was gone."""
+    _net(drawing, (15.0, -26.0), "PWR_EN", "left")
+    drawing += (diode := elm.Schottky().at((15.0, -26.0)).right().label("D1 BAT54"))
+    drawing += (series := elm.Resistor().at(diode.end).right().label("1k"))
+    drawing += elm.Dot().at(series.end)
+    drawing += (store := elm.Capacitor(polar=True).at(series.end).down().label("100 uF", loc="top"))
+    drawing += elm.Ground().at(store.end)
+    drawing += elm.Line().at(series.end).right().length(1.8)
+    drawing += elm.Dot()
+    leak = (series.end[0] + 1.8, -26.0)
+    drawing += (empties := elm.Resistor().at(leak).down().label("1M", loc="top"))
+    drawing += elm.Ground().at(empties.end)
+    drawing += elm.Line().at(leak).right().length(0.8)
+    drawing += (fet := elm.NFet().theta(0).reverse().anchor("gate"))
+    drawing += elm.Label().at((fet.source[0] + 0.2, -26.4)).label("Q25 2N7002", loc="right", halign="left", fontsize=10)
+    drawing += elm.Ground().at(fet.source)
+    _net(drawing, fet.drain, "/WARM", "top")

@@ -16,7 +16,7 @@ NETS = {number: net for number, net, _ in board.PINS}
 
 @pytest.mark.parametrize(
     "name", ["PWR_EN", "HEARTBEAT", "SDA", "SCL", "ESTOP_SENSE", "ALERT", "SERVOS", "MISO", "CAN_SELECT", "SCK", "MOSI",
-    "CAN_INTERRUPT", "MONITOR"],
+    "CAN_INTERRUPT", "MONITOR", "WARM"],
 )  # fmt: skip
 def test_the_bench_is_wired_to_the_pins_that_the_firmware_uses(name):
     assert getattr(bench, name) == PICO[name]
@@ -44,7 +44,7 @@ def test_boot_and_main_repeat_the_pins_and_addresses_of_the_board():
 def test_no_pin_is_wired_twice_and_every_pin_of_the_firmware_is():
     pins = [number for number, _, _ in board.PINS]
     named = {"TX", "RX", "STRAP", "THERMISTOR", "PWR_EN", "HEARTBEAT", "SDA", "SCL", "ESTOP_SENSE", "ALERT", "MISO"}
-    named |= {"CAN_SELECT", "SCK", "MOSI", "CAN_INTERRUPT"}
+    named |= {"CAN_SELECT", "SCK", "MOSI", "CAN_INTERRUPT", "WARM"}
 
     assert len(set(pins)) == len(pins)
     assert set(pins) == {PICO[name] for name in named} | set(PICO["SERVOS"])
