@@ -185,6 +185,7 @@ class Bench:
         if self._hot or self.supply.stale:  # resistances have changed, or the source
             self.board.monitor.before_change()
             self.supply.solve(self.plant.resistance)
+            self.board.monitor.after_change()
         if self.clock.now_us % EVERY_US == 0:
             self._soundness.look(self.plant.snapshot(), self.clock.now_us / 1e6)
         self.clock.at(self.clock.now_us + GRID_US, self._grid)
@@ -199,6 +200,7 @@ class Bench:
         gates = self.board.gates()
         self.supply.drive(gates, self.board.pwm_period_us())
         self.supply.solve(self.plant.resistance)
+        self.board.monitor.after_change()
         for coil, (_, width) in zip(self.coils, gates, strict=True):
             coil.switch(width, self.clock.now_us)
         self._hot = any(coil.duty for coil in self.coils)

@@ -78,7 +78,7 @@ class Supply:
         self._on: FloatArray = np.zeros(len(series_ohm))
         self._width: FloatArray = np.zeros(len(series_ohm))
         self._period_us = 1.0
-        self._steady = True
+        self._intervals = 1  # of the period, between which something switches
         self._shorted: NDArray[np.bool_] = np.zeros(len(series_ohm), bool)
         self.solve(np.full(len(series_ohm), np.inf))  # all open: no machine code is left to be loaded later
         self.integrals_vus(0, 0, 1, 1, 1)
@@ -120,7 +120,7 @@ class Supply:
         self.current_a = solve_period(self._circuit, self._on, self._width, resistance_ohm, self.power_w)
         if bridged:
             self.power_w *= share
-        self._steady = self._circuit.intervals[0] == 1
+        self._intervals = int(self._circuit.intervals[0])
 
     def _source_v(self) -> float:
         """Return the voltage of the source without the coils."""
@@ -128,9 +128,13 @@ class Supply:
 
     def steady_v(self) -> tuple[float, float] | None:
         """Return the voltages across the shunt and at the bus pin, or None while they ripple."""
-        if not self._steady:
+        if self._intervals > 1:
             return None
         return self._shunt_ohm * self.current_a, self._voltage_v - self._source_ohm * self.current_a
+
+    def peak_shunt_v(self) -> float:
+        """Return the greatest voltage across the shunt in the PWM period."""
+        return self._shunt_ohm * max(self._circuit.current[: self._intervals].tolist())
 
     def integrals_vus(
         self, begun_us: int, from_us: int, until_us: int, shunt_us: int, bus_us: int

@@ -16,6 +16,9 @@ class Steady:
     def steady_v(self):
         return self.volts
 
+    def peak_shunt_v(self):
+        return self.volts[0]
+
     def integrals_vus(self, *window):
         raise AssertionError("a steady source is not integrated")
 
@@ -40,6 +43,7 @@ class Rig:
     def put(self, shunt_v: float, bus_v: float) -> None:
         self.chip.before_change()
         self.source.volts = (shunt_v, bus_v)
+        self.chip.after_change()
 
     def wait_us(self, us: int) -> None:
         self.clock.run_until(self.clock.now_us + us)
@@ -286,6 +290,9 @@ class Pulsed:
     def steady_v(self):
         return None
 
+    def peak_shunt_v(self):
+        return self.volts
+
     def integrals_vus(self, begun_us, from_us, until_us, shunt_us, bus_us):
         turn_us = shunt_us + bus_us
         shunt = bus = 0
@@ -299,7 +306,9 @@ class Pulsed:
 
 def pulsed(volts: float = 0.01, duty: float = 0.25, period_us: float = 656.0) -> Rig:
     rig = Rig()
-    rig.chip._source = Pulsed(volts, duty, period_us)
+    rig.chip = Ina226(0x40, rig.clock, Pulsed(volts, duty, period_us))
+    rig.bus = Bus([rig.chip])
+    rig.set(0x05, 0x0800)
     return rig
 
 

@@ -9,8 +9,9 @@ below the limit.
 
 Conversions run by themselves at the configured times and averages, and each result is the mean of its own window. No
 event is needed for that: the chip works out what it would have converted when it is next asked, and once more
-(`before_change`) before the supply changes. Only while something is watched does a conversion end with an event, as
-the alert pin acts without being read. Conversions and PWM are not synchronous, so a short conversion of a pulsed
+(`before_change`) before the supply changes. Only while something is watched that can happen (`after_change`) does a
+conversion end with an event, as the alert pin acts without being read: with the supply's peak below an over-current
+limit no conversion can be beyond it. Conversions and PWM are not synchronous, so a short conversion of a pulsed
 current aliases, as on the real board.
 
 DEVIATION: power is the product of the averages, where the chip averages products; nothing here reads it. ASSUMED: a
@@ -19,34 +20,15 @@ set within a turn is held against the next one first; an alert that is not latch
 """
 
 from collections.abc import Callable
-from typing import Protocol
 
 from hil_sim.clock import Clock, Event
+from hil_sim.devices.ina226converter import SHUNT_LSB_V, Converter, Source
 
 CONFIG, SHUNT, BUS, POWER, CURRENT, CALIBRATION, MASK, LIMIT, MAKER_ID, DIE_ID = (*range(8), 0xFE, 0xFF)
 RESET = 0x8000
 SHUNT_OVER, SHUNT_UNDER, BUS_OVER, BUS_UNDER, POWER_OVER, READY_ALERT = 0x8000, 0x4000, 0x2000, 0x1000, 0x800, 0x400
 OF_SHUNT, LIMITS, WATCHED = 0xC000, 0xF800, 0xFC00
 ALERT_FLAG, READY_FLAG, OVERFLOW_FLAG, ALERT_HIGH, LATCH = 0x10, 0x08, 0x04, 0x02, 0x01
-SHUNT_LSB_V = 2.5e-6
-BUS_LSB_V = 1.25e-3
-CONVERSION_US = (140, 204, 332, 588, 1100, 2116, 4156, 8244)
-AVERAGES = (1, 4, 16, 64, 128, 256, 512, 1024)
-
-
-class Source(Protocol):
-    """What is on the chip's inputs."""
-
-    def steady_v(self) -> tuple[float, float] | None:
-        """Return the voltages across the shunt and at the bus pin, or None while they ripple."""
-
-    def integrals_vus(
-        self, begun_us: int, from_us: int, until_us: int, shunt_us: int, bus_us: int
-    ) -> tuple[float, float]:
-        """Return shunt and bus voltage integrated over those parts of from_us..until_us that belong to each.
-
-        Since begun_us, conversions of the shunt (shunt_us long) and of the bus (bus_us) take turns.
-        """
 
 
 class Ina226:
@@ -60,26 +42,26 @@ class Ina226:
         self._look_at: Event | None = None
         self._clock = clock
         self._source = source
-        self._settled = False  # the last conversion and all since saw no change: its results repeat
-        self._pure = True  # nothing has changed since this conversion began
+        self._converter = Converter(source)
         self.reset()
 
     def reset(self) -> None:
         """Return to the power-on state: calibration 0, so current and power read 0 until it is written."""
         self.registers = dict.fromkeys(range(8), 0) | {CONFIG: 0x4127, MAKER_ID: 0x5449, DIE_ID: 0x2260}
         self._pointer = 0
+        self._quiet = True  # nothing that is watched can happen before the source or a register changes
         self._begin()
         self._tell()
 
     def catch_up(self) -> None:
         """Finish all conversions that have ended by now."""
-        now_us = self._clock.now_us
+        now_us, converter = self._clock.now_us, self._converter
         if self._settled:
             self._repeat(now_us)
             return
-        while self._cycle_us and now_us - self._begun_us >= self._cycle_us:
-            self._compare_until(self._begun_us + self._cycle_us)
-            self._integrate(self._begun_us + self._cycle_us)
+        while converter.cycle_us and now_us - converter.begun_us >= converter.cycle_us:
+            self._compare_until(converter.begun_us + converter.cycle_us)
+            converter.convert_cycle()
             self._finish()
             if self._settled:
                 self._repeat(now_us)
@@ -91,9 +73,15 @@ class Ina226:
         """Convert up to now with what has been on the inputs; to be called before the source changes."""
         self.catch_up()
         self._settled = False
-        if self._cycle_us:
-            self._integrate(self._clock.now_us)
-            self._pure = self._seen_us == self._begun_us
+        if self._converter.cycle_us:
+            self._converter.convert(self._clock.now_us)
+            self._pure = self._converter.seen_us == self._converter.begun_us
+
+    def after_change(self) -> None:
+        """See whether what is watched may happen now; to be called after the source has changed."""
+        if self._quiet and not self._is_quiet():
+            self._quiet = False
+            self._watch()
 
     def alert_level(self) -> int:
         """Return the level of the open-drain alert pin with its pull-up: 0 while it alerts."""
@@ -111,7 +99,10 @@ class Ina226:
             self._pointer = data[0]
         if len(data) >= 3:
             self._settled = False
+            if self._converter.cycle_us:
+                self._converter.convert(self._clock.now_us)
             self._store(data[0], data[1] << 8 | data[2])
+            self._quiet = not self.registers[MASK] & WATCHED
             self._watch()
             self._tell()
         return len(data)
@@ -145,10 +136,8 @@ class Ina226:
         old = self.registers[MASK]
         kept = READY_FLAG | OVERFLOW_FLAG | (ALERT_FLAG if value & (LIMITS | LATCH) else 0)
         self.registers[MASK] = value & (WATCHED | ALERT_HIGH | LATCH) | old & kept
-        if not old & LIMITS and self._cycle_us:
-            self._integrate(self._clock.now_us)
-            self._turn_shunt = self._turn_bus = 0.0
-            self._turn_known = self._seen_us == self._begun_us
+        if not old & LIMITS and self._converter.cycle_us:
+            self._converter.turn_counts = self._converter.at_turn_end
 
     def _acknowledge(self) -> None:
         self.registers[MASK] &= ~READY_FLAG
@@ -166,69 +155,69 @@ class Ina226:
             if self._alerted is not None:
                 self._alerted()
 
+    def _is_quiet(self) -> bool:
+        """Return whether nothing that is watched can happen with what is on the inputs now."""
+        mask = self.registers[MASK]
+        if not mask & WATCHED:
+            return True
+        if not mask & SHUNT_OVER or mask & READY_ALERT or (mask & ALERT_FLAG and not mask & LATCH):
+            return False
+        return self._source.peak_shunt_v() < _signed(self.registers[LIMIT]) * SHUNT_LSB_V
+
     def _watch(self) -> None:
         """See to it that a conversion that is watched is looked at when it ends."""
-        watched = self.registers[MASK] & WATCHED
-        if self._look_at is not None or not self._cycle_us or not watched:
-            return
-        due_us = self._begun_us + self._cycle_us
-        if watched & LIMITS:
-            due_us = self._conversion_end()
-            if watched & OF_SHUNT and (due_us - self._begun_us) % self._turn_us != self._shunt_us % self._turn_us:
-                due_us += self._shunt_us
-        self._look_at = self._clock.at(due_us, self._look)
+        if self._look_at is not None:
+            self._look_at.cancel()
+            self._look_at = None
+        if not self._quiet and self._converter.cycle_us:
+            self._look_at = self._clock.at(self._due_us(), self._look)
+
+    def _due_us(self) -> int:
+        """Return when a conversion ends that is watched."""
+        watched = self.registers[MASK]
+        if not watched & LIMITS:
+            return self._converter.begun_us + self._converter.cycle_us
+        return self._converter.shunt_end_us() if watched & OF_SHUNT else self._converter.conversion_end_us()
 
     def _look(self) -> None:
-        self._look_at = None
+        """Hold a conversion that ends now against the limit; what comes after it has nothing but what is there now."""
         self.catch_up()
+        self._quiet = self._is_quiet()
         self._watch()
         self._tell()
 
     def _begin(self) -> None:
         """Start a conversion as CONFIG says."""
-        config = self.registers[CONFIG]
-        self._averages = AVERAGES[config >> 9 & 7]
-        self._shunt_us = CONVERSION_US[config >> 3 & 7] if config & 1 else 0
-        self._bus_us = CONVERSION_US[config >> 6 & 7] if config & 2 else 0
-        self._turn_us = self._shunt_us + self._bus_us
-        self._cycle_us = self._turn_us * self._averages
-        self._begun_us = self._seen_us = self._clock.now_us
-        self._shunt_sum = self._bus_sum = 0.0
-        self._turn_shunt = self._turn_bus = 0.0  # of this turn alone
-        self._turn_known = True  # from its beginning
-        self._pure, self._settled = True, False
+        self._converter.begin(self.registers[CONFIG], self._clock.now_us)
+        self._pure = True  # nothing has changed since this conversion began
+        self._settled = False  # True: the last conversion and all since saw no change, its results repeat
 
     def _skip(self, now_us: int) -> None:
         """Leave out conversions whose results nobody can see: all but the last one before now."""
-        if self._cycle_us and not self.registers[MASK] & WATCHED:
-            unseen = max(0, (now_us - self._begun_us) // self._cycle_us - 1)
-            self._begun_us = self._seen_us = self._begun_us + unseen * self._cycle_us
+        converter = self._converter
+        if self._quiet and converter.cycle_us:
+            unseen = max(0, (now_us - converter.begun_us) // converter.cycle_us - 1)
+            converter.begin_cycle(converter.begun_us + unseen * converter.cycle_us)
 
     def _repeat(self, now_us: int) -> None:
         """Take whole conversions as done without a change of the results."""
-        turns = (now_us - self._begun_us) // self._cycle_us
-        if turns:
-            self._begun_us = self._seen_us = self._begun_us + turns * self._cycle_us
-            self._shunt_sum = self._bus_sum = 0.0
+        converter = self._converter
+        cycles = (now_us - converter.begun_us) // converter.cycle_us
+        if cycles:
+            converter.begin_cycle(converter.begun_us + cycles * converter.cycle_us)
             self.registers[MASK] |= READY_FLAG
 
-    def _conversion_end(self) -> int:
-        """Return when the conversion ends that is under way."""
-        place_us = (self._seen_us - self._begun_us) % self._turn_us
-        length_us = self._shunt_us if place_us < self._shunt_us else self._turn_us
-        return self._seen_us + length_us - place_us
-
     def _compare_until(self, until_us: int) -> None:
-        """Hold every conversion that ends by then against the limit, if one is watched."""
-        while self._cycle_us and self.registers[MASK] & LIMITS and self._conversion_end() <= until_us:
-            self._integrate(self._conversion_end())
-            place_us = (self._seen_us - self._begun_us) % self._turn_us
-            of_shunt = bool(self.registers[MASK] & OF_SHUNT)
-            if self._turn_known and place_us == (self._shunt_us % self._turn_us if of_shunt else 0):
+        """Hold every conversion that ends by then against the limit, if one is watched that they could pass."""
+        converter, mask = self._converter, self.registers[MASK]
+        if self._quiet or not mask & LIMITS:
+            return
+        while converter.cycle_us and converter.conversion_end_us() <= until_us:
+            converter.end_conversion()
+            if converter.turn_counts and (converter.at_shunt_end if mask & OF_SHUNT else converter.at_turn_end):
                 self._compare()
-            if place_us == 0:
-                self._turn_shunt = self._turn_bus = 0.0
-                self._turn_known = True
+            if converter.at_turn_end:
+                converter.begin_turn()
 
     def _compare(self) -> None:
         if self._beyond_limit():
@@ -239,8 +228,7 @@ class Ina226:
     def _beyond_limit(self) -> bool:
         """Return whether the one watched value, the highest bit where several are set, is beyond the limit."""
         mask, limit = self.registers[MASK], self.registers[LIMIT]
-        shunt = _bits(self._turn_shunt, self._shunt_us, SHUNT_LSB_V)
-        bus = max(0, _bits(self._turn_bus, self._bus_us, BUS_LSB_V))
+        shunt, bus = self._converter.turn_bits()
         power = abs(int(shunt * self.registers[CALIBRATION] / 2048)) * bus // 20_000
         watched = (
             (SHUNT_OVER, shunt > _signed(limit)),
@@ -251,53 +239,25 @@ class Ina226:
         )
         return next((beyond for bit, beyond in watched if mask & bit), False)
 
-    def _integrate(self, until_us: int) -> None:
-        """Add what has been on the inputs between the time last seen and `until_us` to the sums."""
-        steady = self._source.steady_v()
-        if steady is None:
-            shunt_vus, bus_vus = self._source.integrals_vus(
-                self._begun_us, self._seen_us, until_us, self._shunt_us, self._bus_us
-            )
-        else:
-            past_us, end_us = self._seen_us - self._begun_us, until_us - self._begun_us
-            shunt_us = self._shunt_time(end_us) - self._shunt_time(past_us)
-            shunt_vus, bus_vus = steady[0] * shunt_us, steady[1] * (end_us - past_us - shunt_us)
-        self._shunt_sum += shunt_vus
-        self._bus_sum += bus_vus
-        self._turn_shunt += shunt_vus
-        self._turn_bus += bus_vus
-        self._seen_us = until_us
-
-    def _shunt_time(self, elapsed_us: int) -> int:
-        """Return how much of the first `elapsed_us` of a cycle went into shunt conversions."""
-        turns, rest_us = divmod(elapsed_us, self._turn_us)
-        return turns * self._shunt_us + min(rest_us, self._shunt_us)
-
     def _finish(self) -> None:
-        registers = self.registers
-        if self._shunt_us:
-            shunt = _bits(self._shunt_sum, self._shunt_us * self._averages, SHUNT_LSB_V)
+        """Put the averages of a cycle into the registers and begin the next."""
+        registers, converter = self.registers, self._converter
+        shunt, bus = converter.cycle_bits()
+        if converter.converts_shunt:
             registers[SHUNT] = shunt & 0xFFFF
             current = int(shunt * registers[CALIBRATION] / 2048)
             registers[CURRENT] = max(-0x8000, min(0x7FFF, current)) & 0xFFFF
             overflow = OVERFLOW_FLAG if not -0x8000 <= current <= 0x7FFF else 0
             registers[MASK] = registers[MASK] & ~OVERFLOW_FLAG | overflow
-        if self._bus_us:
-            registers[BUS] = max(0, _bits(self._bus_sum, self._bus_us * self._averages, BUS_LSB_V))
+        if converter.converts_bus:
+            registers[BUS] = bus
         registers[POWER] = min(0xFFFF, abs(_signed(registers[CURRENT])) * registers[BUS] // 20_000)
         registers[MASK] |= READY_FLAG
-        self._begun_us = self._seen_us
-        self._shunt_sum = self._bus_sum = 0.0
-        watched = registers[MASK] & WATCHED
-        self._settled = self._pure and not watched and self._source.steady_v() is not None
+        self._settled = self._pure and self._quiet and self._source.steady_v() is not None
         self._pure = True
-        if not registers[CONFIG] & 4:
-            self._cycle_us, self._settled = 0, False  # one shot
-
-
-def _bits(sum_vus: float, time_us: int, lsb_v: float) -> int:
-    """Return the mean of a sum in bits, held at the ends of the scale; 0 where nothing was converted."""
-    return max(-0x8000, min(0x7FFF, round(sum_vus / time_us / lsb_v))) if time_us else 0
+        converter.begin_cycle(converter.seen_us)
+        if not registers[CONFIG] & 4:  # one shot
+            converter.cycle_us, self._settled = 0, False
 
 
 def _signed(value: int) -> int:
