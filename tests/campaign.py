@@ -11,6 +11,7 @@ import argparse
 import hashlib
 import json
 import os
+import signal
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -97,7 +98,7 @@ def tree_sha256() -> str:
 def _run(keys: list[Key], jobs: int) -> Iterator[dict[str, Any]]:
     """Yield the row of each as it is done, with a progress bar."""
     columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True)) as progress, ProcessPoolExecutor(jobs) as pool:
+    with Progress(*columns, console=Console(stderr=True)) as progress, _pool(jobs) as pool:
         task = progress.add_task("campaign", total=len(keys))
         waiting = {pool.submit(_one, key) for key in keys}
         try:
@@ -107,6 +108,11 @@ def _run(keys: list[Key], jobs: int) -> Iterator[dict[str, Any]]:
                 yield row
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
+
+
+def _pool(jobs: int) -> ProcessPoolExecutor:
+    """Return processes that leave Ctrl-C to their parent."""
+    return ProcessPoolExecutor(jobs, initializer=signal.signal, initargs=(signal.SIGINT, signal.SIG_IGN))
 
 
 def _one(key: Key) -> dict[str, Any]:
