@@ -10,6 +10,7 @@ and so does each outside input (bytes from the host, faults). Kept entries can b
 
 import hashlib
 import marshal
+from itertools import repeat
 
 PIN, I2C_WRITE, I2C_READ, ADC, UART_SENT, UART_HEARD, FAULT, RESET, FLASH, SPI, PWM = range(11)
 KINDS = ("pin", "i2c write", "i2c read", "adc", "uart sent", "uart heard", "fault", "reset", "flash", "spi", "pwm")
@@ -37,7 +38,7 @@ class Journal:
     def trace_sha256(self) -> str:
         """Return the hash over all entries so far, in hexadecimal."""
         copy = self._hash.copy()
-        copy.update(b"".join(map(_encoded, self._waiting)))
+        copy.update(_encoded(self._waiting))
         return copy.hexdigest()
 
     def kept(self) -> list[Entry]:
@@ -46,11 +47,11 @@ class Journal:
         return self.entries
 
     def _settle(self) -> None:
-        self._hash.update(b"".join(map(_encoded, self._waiting)))
+        self._hash.update(_encoded(self._waiting))
         if self._keep:
             self.entries.extend(self._waiting)
         self._waiting = []
 
 
-def _encoded(entry: Entry) -> bytes:
-    return marshal.dumps(entry, 2)  # version 2 has no back references, so equal entries give equal bytes
+def _encoded(entries: list[Entry]) -> bytes:
+    return b"".join(map(marshal.dumps, entries, repeat(2)))  # version 2 has no back references: equal entries, bytes

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from hil_sim.devices.pca9685 import Gate
 from hil_sim.physics.battery import BatteryNumbers, open_voltage
 from hil_sim.physics.circuit import circuit_of
+from hil_sim.physics.compiled import bound
 from hil_sim.physics.window import solve_period, window_charges
 
 FloatArray = NDArray[np.float64]
@@ -80,8 +81,11 @@ class Supply:
         self._period_us = 1.0
         self._intervals = 1  # of the period, between which something switches
         self._shorted: NDArray[np.bool_] = np.zeros(len(series_ohm), bool)
-        self.solve(np.full(len(series_ohm), np.inf))  # all open: no machine code is left to be loaded later
-        self.integrals_vus(0, 0, 1, 1, 1)
+        self._bridged = False  # any of them is
+        self._resistance_ohm: FloatArray = np.full(len(series_ohm), np.inf)
+        coils = (self._on, self._width, self._resistance_ohm, self.power_w)
+        self._solve_period = bound(solve_period, self._circuit, *coils)
+        self._window_charges = bound(window_charges, self._circuit, self._period_us, 0, 0, 1, 1, 1)
 
     @property
     def stale(self) -> bool:
@@ -100,6 +104,7 @@ class Supply:
     def short_coil(self, index: int, shorted: bool) -> None:
         """Bridge the terminals of a coil, or part them; `solve` must follow."""
         self._shorted[index] = shorted
+        self._bridged = bool(self._shorted.any())
 
     def sag(self, share: float) -> None:
         """Let the source give this share less of its voltage than it should; `solve` must follow."""
@@ -113,12 +118,13 @@ class Supply:
     def solve(self, resistance_ohm: FloatArray) -> None:
         """Work out powers and currents for resistances that hold from now on."""
         self._voltage_v = self._circuit.supply[0] = self._source_v()
-        bridged = bool(self._shorted.any())
-        if bridged:
-            share = np.where(self._shorted, SHORT_OHM / (SHORT_OHM + resistance_ohm), 1.0)  # of its power, a coil's own
-            resistance_ohm = np.where(self._shorted, 1 / (1 / SHORT_OHM + 1 / resistance_ohm), resistance_ohm)
-        self.current_a = solve_period(self._circuit, self._on, self._width, resistance_ohm, self.power_w)
-        if bridged:
+        ohm = self._resistance_ohm
+        ohm[:] = resistance_ohm
+        if self._bridged:
+            share = np.where(self._shorted, SHORT_OHM / (SHORT_OHM + ohm), 1.0)  # of its power, a coil's own
+            ohm[:] = np.where(self._shorted, 1 / (1 / SHORT_OHM + 1 / ohm), ohm)
+        self.current_a = self._solve_period(self._circuit, self._on, self._width, ohm, self.power_w)
+        if self._bridged:
             self.power_w *= share
         self._intervals = int(self._circuit.intervals[0])
 
@@ -140,7 +146,7 @@ class Supply:
         self, begun_us: int, from_us: int, until_us: int, shunt_us: int, bus_us: int
     ) -> tuple[float, float]:
         """Return both voltages integrated over their turns of the conversions since begun_us."""
-        shunt, bus, bus_time_us = window_charges(
+        shunt, bus, bus_time_us = self._window_charges(
             self._circuit, self._period_us, begun_us, from_us, until_us, shunt_us, bus_us
         )
         return self._shunt_ohm * shunt, self._voltage_v * bus_time_us - self._source_ohm * bus

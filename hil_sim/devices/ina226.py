@@ -9,10 +9,9 @@ below the limit.
 
 Conversions run by themselves at the configured times and averages, and each result is the mean of its own window. No
 event is needed for that: the chip works out what it would have converted when it is next asked, and once more
-(`before_change`) before the supply changes. Only while something is watched that can happen (`after_change`) does a
-conversion end with an event, as the alert pin acts without being read: with the supply's peak below an over-current
-limit no conversion can be beyond it. Conversions and PWM are not synchronous, so a short conversion of a pulsed
-current aliases, as on the real board.
+(`before_change`) before the supply changes. Conversions end with events, for an alert pin that acts without being
+read, only while what is watched can happen (`after_change`): not while the supply's peak is below an over-current
+limit. Conversions and PWM are not synchronous, so a short one of a pulsed current aliases, as on the real board.
 
 DEVIATION: power is the product of the averages, where the chip averages products; nothing here reads it. ASSUMED: a
 turn is a shunt and then a bus conversion; results round to the nearest bit, current and power towards zero; a limit
@@ -23,12 +22,27 @@ from collections.abc import Callable
 
 from hil_sim.clock import Clock, Event
 from hil_sim.devices.ina226converter import SHUNT_LSB_V, Converter, Source
-
-CONFIG, SHUNT, BUS, POWER, CURRENT, CALIBRATION, MASK, LIMIT, MAKER_ID, DIE_ID = (*range(8), 0xFE, 0xFF)
-RESET = 0x8000
-SHUNT_OVER, SHUNT_UNDER, BUS_OVER, BUS_UNDER, POWER_OVER, READY_ALERT = 0x8000, 0x4000, 0x2000, 0x1000, 0x800, 0x400
-OF_SHUNT, LIMITS, WATCHED = 0xC000, 0xF800, 0xFC00
-ALERT_FLAG, READY_FLAG, OVERFLOW_FLAG, ALERT_HIGH, LATCH = 0x10, 0x08, 0x04, 0x02, 0x01
+from hil_sim.devices.ina226registers import (
+    ALERT_FLAG,
+    ALERT_HIGH,
+    CALIBRATION,
+    CONFIG,
+    LATCH,
+    LIMIT,
+    LIMITS,
+    MASK,
+    OF_SHUNT,
+    OVERFLOW_FLAG,
+    READY_ALERT,
+    READY_FLAG,
+    RESET,
+    SHUNT_OVER,
+    WATCHED,
+    after_reset,
+    is_beyond_limit,
+    signed,
+    take_averages,
+)
 
 
 class Ina226:
@@ -47,7 +61,7 @@ class Ina226:
 
     def reset(self) -> None:
         """Return to the power-on state: calibration 0, so current and power read 0 until it is written."""
-        self.registers = dict.fromkeys(range(8), 0) | {CONFIG: 0x4127, MAKER_ID: 0x5449, DIE_ID: 0x2260}
+        self.registers = after_reset()
         self._pointer = 0
         self._quiet = True  # nothing that is watched can happen before the source or a register changes
         self._begin()
@@ -60,14 +74,16 @@ class Ina226:
             self._repeat(now_us)
             return
         while converter.cycle_us and now_us - converter.begun_us >= converter.cycle_us:
-            self._compare_until(converter.begun_us + converter.cycle_us)
+            if not self._quiet:
+                self._compare_until(converter.begun_us + converter.cycle_us)
             converter.convert_cycle()
             self._finish()
             if self._settled:
                 self._repeat(now_us)
                 return
             self._skip(now_us)
-        self._compare_until(now_us)
+        if not self._quiet:
+            self._compare_until(now_us)
 
     def before_change(self) -> None:
         """Convert up to now with what has been on the inputs; to be called before the source changes."""
@@ -162,7 +178,7 @@ class Ina226:
             return True
         if not mask & SHUNT_OVER or mask & READY_ALERT or (mask & ALERT_FLAG and not mask & LATCH):
             return False
-        return self._source.peak_shunt_v() < _signed(self.registers[LIMIT]) * SHUNT_LSB_V
+        return self._source.peak_shunt_v() < signed(self.registers[LIMIT]) * SHUNT_LSB_V
 
     def _watch(self) -> None:
         """See to it that a conversion that is watched is looked at when it ends."""
@@ -208,11 +224,9 @@ class Ina226:
             self.registers[MASK] |= READY_FLAG
 
     def _compare_until(self, until_us: int) -> None:
-        """Hold every conversion that ends by then against the limit, if one is watched that they could pass."""
+        """Hold every conversion that ends by then against the limit, if one is watched."""
         converter, mask = self._converter, self.registers[MASK]
-        if self._quiet or not mask & LIMITS:
-            return
-        while converter.cycle_us and converter.conversion_end_us() <= until_us:
+        while mask & LIMITS and converter.cycle_us and converter.conversion_end_us() <= until_us:
             converter.end_conversion()
             if converter.turn_counts and (converter.at_shunt_end if mask & OF_SHUNT else converter.at_turn_end):
                 self._compare()
@@ -220,45 +234,17 @@ class Ina226:
                 converter.begin_turn()
 
     def _compare(self) -> None:
-        if self._beyond_limit():
+        if is_beyond_limit(self.registers, *self._converter.turn_bits()):
             self.registers[MASK] |= ALERT_FLAG
         elif not self.registers[MASK] & LATCH:
             self.registers[MASK] &= ~ALERT_FLAG
 
-    def _beyond_limit(self) -> bool:
-        """Return whether the one watched value, the highest bit where several are set, is beyond the limit."""
-        mask, limit = self.registers[MASK], self.registers[LIMIT]
-        shunt, bus = self._converter.turn_bits()
-        power = abs(int(shunt * self.registers[CALIBRATION] / 2048)) * bus // 20_000
-        watched = (
-            (SHUNT_OVER, shunt > _signed(limit)),
-            (SHUNT_UNDER, shunt < _signed(limit)),
-            (BUS_OVER, bus > limit),
-            (BUS_UNDER, bus < limit),
-            (POWER_OVER, power > limit),
-        )
-        return next((beyond for bit, beyond in watched if mask & bit), False)
-
     def _finish(self) -> None:
         """Put the averages of a cycle into the registers and begin the next."""
-        registers, converter = self.registers, self._converter
-        shunt, bus = converter.cycle_bits()
-        if converter.converts_shunt:
-            registers[SHUNT] = shunt & 0xFFFF
-            current = int(shunt * registers[CALIBRATION] / 2048)
-            registers[CURRENT] = max(-0x8000, min(0x7FFF, current)) & 0xFFFF
-            overflow = OVERFLOW_FLAG if not -0x8000 <= current <= 0x7FFF else 0
-            registers[MASK] = registers[MASK] & ~OVERFLOW_FLAG | overflow
-        if converter.converts_bus:
-            registers[BUS] = bus
-        registers[POWER] = min(0xFFFF, abs(_signed(registers[CURRENT])) * registers[BUS] // 20_000)
-        registers[MASK] |= READY_FLAG
+        converter = self._converter
+        take_averages(self.registers, *converter.cycle_bits())
         self._settled = self._pure and self._quiet and self._source.steady_v() is not None
         self._pure = True
         converter.begin_cycle(converter.seen_us)
-        if not registers[CONFIG] & 4:  # one shot
+        if not self.registers[CONFIG] & 4:  # one shot
             converter.cycle_us, self._settled = 0, False
-
-
-def _signed(value: int) -> int:
-    return value - 0x10000 if value & 0x8000 else value

@@ -61,16 +61,6 @@ class Converter:
         self.turn_counts = True
 
     @property
-    def converts_shunt(self) -> bool:
-        """Whether a turn has a conversion of the shunt."""
-        return self._shunt_us > 0
-
-    @property
-    def converts_bus(self) -> bool:
-        """Whether a turn has a conversion of the bus."""
-        return self._bus_us > 0
-
-    @property
     def at_shunt_end(self) -> bool:
         """Whether the conversion of the shunt has ended at `seen_us`."""
         return self._place_us() == self._shunt_us % self._turn_us
@@ -107,11 +97,13 @@ class Converter:
         """Convert to the end of the cycle."""
         self._integrate(self.begun_us + self.cycle_us)
 
-    def cycle_bits(self) -> tuple[int, int]:
-        """Return the averages of shunt and bus over the cycle."""
-        turns = self._averages
-        shunt = _bits(self._shunt_sum, self._shunt_us * turns, SHUNT_LSB_V)
-        return shunt, max(0, _bits(self._bus_sum, self._bus_us * turns, BUS_LSB_V))
+    def cycle_bits(self) -> tuple[int | None, int | None]:
+        """Return the averages of shunt and bus over the cycle; None for one that is not converted."""
+        shunt_us, bus_us = self._shunt_us * self._averages, self._bus_us * self._averages
+        return (
+            _bits(self._shunt_sum, shunt_us, SHUNT_LSB_V) if shunt_us else None,
+            max(0, _bits(self._bus_sum, bus_us, BUS_LSB_V)) if bus_us else None,
+        )
 
     def turn_bits(self) -> tuple[int, int]:
         """Return the conversions of the shunt and of the bus in this turn."""
