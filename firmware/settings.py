@@ -35,10 +35,6 @@ class Settings:
         else:
             self.source = messages.STORED if self._take(record) else messages.DAMAGED
 
-    def resistance_mohm(self, channel: int) -> int:
-        """Return a cold coil's resistance: as measured, else as the profile has it."""
-        return self.measured_mohm[channel] or self._nominal_mohm
-
     def change(self, setting: int, channel: int, value: int) -> None:
         """Set one and write all down, or raise Refused; a resistance of 0 is the profile's again."""
         low, high = self._range(setting, channel, value)

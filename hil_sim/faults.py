@@ -91,9 +91,7 @@ TABLE = (
     Fault("battery-empty", "The battery on board is at its end.", once(mishaps.battery_empty), False),
     Fault("battery-full", "The battery on board is charged.", once(mishaps.battery_full), False),
     Fault("brown-out", "The board has no supply: chips and processor forget.", on_off(mishaps.brown_out)),
-    Fault(
-        "power-cycle", "The board's supply is gone for an instant.", once(lambda bench: bench.world.power_on()), False
-    ),
+    Fault("power-cycle", "The board's supply is gone for an instant.", once(mishaps.power_cycle), False),
     Fault("thermistor-open", "The wire of the thermistor is broken.", on_off(mishaps.thermistor("open"))),
     Fault("thermistor-short", "The thermistor is shorted.", on_off(mishaps.thermistor("short"))),
     Fault("thermistor-drift", "The thermistor reads more with each second.", mishaps.thermistor_drift, argument=DRIFT),

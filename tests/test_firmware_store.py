@@ -124,7 +124,7 @@ def test_settings_have_defaults_and_survive():
     flash = Flash({})
     fresh = settings_on(flash)
     assert (fresh.source, fresh.node, fresh.board_offset_decidegc) == (messages.DEFAULTS, 1, 0)
-    assert fresh.resistance_mohm(2) == Profile(PROFILE.read_bytes()).coil.resistance_mohm
+    assert list(fresh.measured_mohm) == [0] * 8
 
     fresh.change(messages.NODE, 255, 9)
     fresh.change(messages.BOARD_OFFSET, 255, -15)
@@ -132,7 +132,7 @@ def test_settings_have_defaults_and_survive():
 
     later = settings_on(flash)
     assert (later.source, later.node, later.board_offset_decidegc) == (messages.STORED, 9, -15)
-    assert [later.resistance_mohm(channel) for channel in (1, 2)] == [fresh.resistance_mohm(1), 9000]
+    assert list(later.measured_mohm) == [0, 0, 9000, *[0] * 5]
 
 
 @pytest.mark.parametrize(
@@ -165,11 +165,10 @@ def test_a_resistance_of_a_coil_that_is_not_there_is_refused():
 
 def test_a_resistance_of_none_is_the_profiles_again():
     settings = settings_on(Flash({}))
-    nominal = settings.resistance_mohm(0)
     settings.change(messages.RESISTANCE, 0, 9100)
     settings.change(messages.RESISTANCE, 0, 0)
 
-    assert settings.resistance_mohm(0) == nominal
+    assert settings.measured_mohm[0] == 0
 
 
 @pytest.mark.parametrize("record", [b"", b"\x01\x00\x00", bytes(100)])

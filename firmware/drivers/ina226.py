@@ -8,8 +8,7 @@ CONFIG, SHUNT_VOLTAGE, BUS_VOLTAGE, CURRENT, CALIBRATION, MASK, LIMIT = 0x00, 0x
 # 4 averages of 2.116 ms (shunt) and 332 us (bus): a value every 9.8 ms. They fall on all phases of the coils'
 # PWM (655 us), so that the mean is right within 0.5 % of full duty; many other settings beat with the PWM by 50 %.
 AVERAGED = 0x42AF
-HASTY = 0x4097  # no averages, 332 us each
-HASTY_US = 750  # both conversions; the sheet allows each 10 % more than its name
+HASTY = 0x4097  # no averages, 332 us each; the sheet allows 10 % more
 OVER_SHUNT_LATCHED = 0x8001
 
 
@@ -47,7 +46,7 @@ class Ina226:
         self._write(CONFIG, AVERAGED)
 
     def hasten(self) -> None:
-        """Begin hasty conversions anew; the first result comes after HASTY_US."""
+        """Begin hasty conversions anew; the first result comes after both."""
         self._write(CONFIG, HASTY)
 
     def look(self) -> None:

@@ -36,12 +36,12 @@ def command(port: str | None, robot_name: str, robot: str | None, dry_run: bool,
     if port is None:
         if not dry_run:
             raise click.UsageError("name the board's console by --port; `softrig ports` lists them")
-        _tell_dry(as_json, image, {**image.root, **{f"SLOT/{path}": data for path, data in image.slot.items()}})
+        _tell_dry(as_json, {**image.root, **{f"SLOT/{path}": data for path, data in image.slot.items()}})
         return
     with Console(port) as console:
         plan = planned(console, image)
         if dry_run:
-            _tell_dry(as_json, image, {**plan.root, **plan.write})
+            _tell_dry(as_json, {**plan.root, **plan.write})
         elif not plan.done:
             with _shown(sum(map(len, plan.write.values()))) as progress:
                 carried_out(console, image, plan, progress)
@@ -66,7 +66,7 @@ def _answered(address: str) -> dict[str, str | None]:
     return {"state": status.state, "code": row.name if row else None}
 
 
-def _tell_dry(as_json: bool, image: Image, files: dict[str, bytes]) -> None:
+def _tell_dry(as_json: bool, files: dict[str, bytes]) -> None:
     rows = [f"{len(data):7d}  {path}" for path, data in files.items()]
     told = f"{len(files)} files of {sum(map(len, files.values()))} bytes would be copied"
     emit(as_json, {"files": {path: len(data) for path, data in files.items()}}, [*rows, told])

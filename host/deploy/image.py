@@ -30,11 +30,6 @@ class Image:
                 else:
                     self.slot[path] = place.read_bytes()
 
-    @property
-    def size(self) -> int:
-        """Return how many bytes all files have."""
-        return sum(map(len, [*self.slot.values(), *self.root.values()]))
-
 
 def robot_names() -> list[str]:
     """Return the names of the robots whose profiles are installed."""
