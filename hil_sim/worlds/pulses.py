@@ -1,7 +1,7 @@
 """`machine.PWM` as the rp2 port of MicroPython has it: its rounding and its refusals (ports/rp2/machine_pwm.c).
 
-The two pins of a slice share one frequency. Nothing is put out until both a frequency and a duty are set. Measured on
-MicroPython 1.25 for the RP2040: freq(1) is refused, and duty_ns(1_500_000) at 50 Hz reads back 1_500_005.
+The two pins of a slice share one frequency. Nothing is put out until both a frequency and a duty are set. MicroPython
+1.25 for the RP2040, on an emulator of that chip, refuses freq(1) and reads duty_ns(1_500_000) at 50 Hz as 1_500_005.
 """
 
 from typing import ClassVar
