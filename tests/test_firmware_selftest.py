@@ -1,4 +1,4 @@
-"""The self-test before ARM, on the core alone: what it finds, what it refuses with, and that it leaves everything off."""
+"""The self-test before ARM, on the core alone: what it finds, what it refuses with, that it leaves everything off."""
 
 import pytest
 

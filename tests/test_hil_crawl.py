@@ -122,7 +122,7 @@ def test_it_goes_nowhere(why):
 def test_without_friction_it_slips():
     slipping = report(CRAWL, "?mu=0.001")["observed"]
 
-    assert abs(slipping["travel_mm"]) < 0.55 * 8 * EIGHTH_MM
+    assert abs(slipping["travel_mm"]) < 0.55 * 8 * EIGHTH_MM  # half, and what sense slots of 2 ms change by chance
 
 
 def test_the_measured_current_is_the_duty_s_share_and_does_not_beat_with_the_pwm(rig):

@@ -77,7 +77,7 @@ LOSSES = [
     (
         "core.py",
         LEASE_LEFT,
-        LEASE_LEFT + " return self.lease_ms\n    def _(self):",
+        LEASE_LEFT + LIVES,
         deserted,
         "on for 1.* ms beyond the lease",
     ),
