@@ -2,6 +2,7 @@
 
 import json
 import weakref
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import settings
@@ -9,6 +10,7 @@ from hypothesis import settings
 from hil_sim.bench import Bench
 from hil_sim.physics import circuit, coil
 from hil_sim.physics.compiled import prepare
+from host.cli import main
 from tests.hil_rig import HilRig
 from tests.witness import Witness
 
@@ -82,3 +84,16 @@ def faulty(tmp_path):
     yield built
     for rig in rigs:
         rig.link.close()
+
+
+@pytest.fixture
+def softrig(capsys):
+    """Run a command line: (exit status, stdout, stderr)."""
+
+    def call(*arguments: str) -> SimpleNamespace:
+        with pytest.raises(SystemExit) as ended:
+            main(list(arguments))
+        printed = capsys.readouterr()
+        return SimpleNamespace(status=ended.value.code, out=printed.out, err=printed.err)
+
+    return call

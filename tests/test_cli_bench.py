@@ -8,11 +8,9 @@ import subprocess
 import sys
 from contextlib import suppress
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 
-from host.cli import main
 from host.errors import Refused
 from host.link import open_link
 from host.logbook import read_log
@@ -28,17 +26,10 @@ PATIENCE_S = 60
 
 
 @pytest.fixture
-def softrig(capsys, monkeypatch):
-    """Run a command line in the sources' folder: (exit status, stdout, stderr)."""
+def softrig(softrig, monkeypatch):
+    """Run a command line in the sources' folder."""
     monkeypatch.chdir(ROOT)
-
-    def call(*arguments: str) -> SimpleNamespace:
-        with pytest.raises(SystemExit) as ended:
-            main(list(arguments))
-        printed = capsys.readouterr()
-        return SimpleNamespace(status=ended.value.code, out=printed.out, err=printed.err)
-
-    return call
+    return softrig
 
 
 @pytest.fixture

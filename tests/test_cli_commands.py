@@ -9,7 +9,6 @@ from types import SimpleNamespace
 
 import pytest
 
-from host.cli import main
 from protocol import causes, codes, messages
 from tests.fake_robot import PROFILE, FakeLine, FakeRobot
 
@@ -31,19 +30,6 @@ def line(peer, monkeypatch):
     monkeypatch.setenv("SOFTRIG_ROBOT", "fake:")
     monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
     return line
-
-
-@pytest.fixture
-def softrig(capsys):
-    """Run a command line: (exit status, stdout, stderr)."""
-
-    def call(*arguments: str) -> SimpleNamespace:
-        with pytest.raises(SystemExit) as ended:
-            main(list(arguments))
-        printed = capsys.readouterr()
-        return SimpleNamespace(status=ended.value.code, out=printed.out, err=printed.err)
-
-    return call
 
 
 @pytest.fixture

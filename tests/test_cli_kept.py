@@ -5,7 +5,6 @@ from types import SimpleNamespace
 
 import pytest
 
-from host.cli import main
 from tests.hil_rig import HilRig
 
 
@@ -30,19 +29,12 @@ def rig():
 
 
 @pytest.fixture
-def softrig(rig, capsys, monkeypatch):
-    """Run a command line on the rig's robot: (exit status, stdout, stderr)."""
+def softrig(rig, softrig, monkeypatch):
+    """Run a command line on the rig's robot."""
     point = SimpleNamespace(name="rig", load=lambda: lambda address: Lasting(rig.link))
     monkeypatch.setattr("host.link.entry_points", lambda group: [point])
     monkeypatch.setenv("SOFTRIG_ROBOT", "rig:")
-
-    def call(*arguments: str) -> SimpleNamespace:
-        with pytest.raises(SystemExit) as ended:
-            main(list(arguments))
-        printed = capsys.readouterr()
-        return SimpleNamespace(status=ended.value.code, out=printed.out, err=printed.err)
-
-    return call
+    return softrig
 
 
 def trip(rig):
