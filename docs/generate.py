@@ -13,7 +13,7 @@ from pathlib import Path
 import click
 
 from docs import hardwarepage, meanings, schematic
-from hil_sim import faults
+from hil_sim.faults.table import TABLE as FAULTS
 from host.cli import main as softrig
 from host.gait.errors import ROWS
 from protocol import causes, frames, link, messages, program
@@ -164,7 +164,7 @@ def hardware_page() -> str:
 
 def faults_page() -> str:
     """Return what can go wrong on the bench and what is promised then."""
-    names = [(f"`{fault.spelled}`", fault.about, "lasts" if fault.ends else "") for fault in faults.TABLE]
+    names = [(f"`{fault.spelled}`", fault.about, "lasts" if fault.ends else "") for fault in FAULTS]
     situations = "\n".join(
         f"* *{name}*: {'; '.join(f'`{line}`' for line in script.splitlines())}"
         for name, (script, _) in fault_table.ORDERS.items()

@@ -6,9 +6,9 @@ from pathlib import Path
 from hil_sim.address import BODIES, Address
 from hil_sim.bench import Bench, Parts, Plant
 from hil_sim.devices.ntc import Ntc
-from hil_sim.faultfile import load as load_faults
-from hil_sim.faultfile import plan
-from hil_sim.faults import schedule
+from hil_sim.faults.file import load as load_faults
+from hil_sim.faults.file import plan
+from hil_sim.faults.happening import schedule
 from hil_sim.plant import RingPlant
 from hil_sim.robotcheck import near
 from hil_sim.robotfile import RobotFile, RobotFileError, load

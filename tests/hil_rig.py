@@ -8,7 +8,7 @@ rig.happens("cable-cut")
 
 from dataclasses import dataclass
 
-from hil_sim.faults import schedule
+from hil_sim.faults.happening import schedule
 from hil_sim.link import open_link
 from host.robot import Robot
 

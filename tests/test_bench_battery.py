@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hil_sim.faults import schedule
+from hil_sim.faults.happening import schedule
 from hil_sim.physics.battery import BatteryNumbers, open_voltage
 from hil_sim.supply import Battery, Supply
 from tests.bench_fakes import bench_of

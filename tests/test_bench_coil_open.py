@@ -4,7 +4,7 @@ import pytest
 
 from hil_sim.address import parse
 from hil_sim.assembly import assemble
-from hil_sim.faults import schedule
+from hil_sim.faults.happening import schedule
 from hil_sim.robotfile import RobotFileError
 from tests.bench_fakes import bench_of
 

@@ -6,7 +6,7 @@ import pytest
 
 from hil_sim.address import parse
 from hil_sim.assembly import assemble
-from hil_sim.faultfile import FaultFileError, load
+from hil_sim.faults.file import FaultFileError, load
 from host.cli import main
 from tests.fault_table import EXAMPLE
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from hil_sim import faults
-from hil_sim.faults import TABLE, schedule
+from hil_sim.faults.happening import BEGUN, MENDED, schedule
+from hil_sim.faults.table import TABLE
 from hil_sim.journal import FAULT
 from tests.bench_fakes import bench_of
 
@@ -148,7 +148,7 @@ def test_a_fault_and_its_end_stand_in_the_journal(bench):
     bench.run(0.2)
 
     noted = [(at_us, which, data) for at_us, kind, which, data in bench.journal.kept() if kind == FAULT]
-    assert noted == [(300_000, faults.BEGUN, b"i2c-nack:3"), (301_000, faults.MENDED, b"i2c-nack:3")]
+    assert noted == [(300_000, BEGUN, b"i2c-nack:3"), (301_000, MENDED, b"i2c-nack:3")]
 
 
 def test_a_mended_fault_leaves_the_bench_as_it_was(tmp_path):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from hil_sim.faults import schedule
+from hil_sim.faults.happening import schedule
 from tests.bench_fakes import bench_of
 
 HEATING = "begin()\nbeat.toggle()\nset_output(0, 500)\n"

@@ -6,7 +6,7 @@ import json
 import pytest
 from rich.console import Console
 
-from hil_sim.faults import NAMES
+from hil_sim.faults.table import NAMES
 from tests import campaign, deaths, trials
 from tests.sabotage import sabotage
 

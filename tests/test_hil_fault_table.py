@@ -8,7 +8,8 @@ from random import Random
 
 import pytest
 
-from hil_sim.faults import NAMES, schedule
+from hil_sim.faults.happening import schedule
+from hil_sim.faults.table import NAMES
 from host.errors import Refused, SoftrigError
 from host.gait.compiler import compile_script
 from host.gait.script import loads

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import pytest
 
-from hil_sim.faults import schedule
+from hil_sim.faults.happening import schedule
 from hil_sim.link import open_link
 from host.errors import (
     DictionaryMismatch,

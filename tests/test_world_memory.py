@@ -9,7 +9,7 @@ import pytest
 from hil_sim.address import parse
 from hil_sim.assembly import parts_of, plant_of
 from hil_sim.bench import Bench
-from hil_sim.faults import schedule
+from hil_sim.faults.happening import schedule
 from hil_sim.link import BOOTED_US, SimLink
 from hil_sim.robotfile import load
 from hil_sim.worlds import micropython

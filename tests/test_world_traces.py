@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from hil_sim.faults import schedule
+from hil_sim.faults.happening import schedule
 from hil_sim.link import open_link
 from host.cli import main
 from host.robot import Robot

@@ -1,4 +1,4 @@
-"""Random trials of the whole path: what a host does, a fault of hil_sim/faults.py, the instant; each from its number.
+"""Random trials of the whole path: what a host does, a fault of hil_sim/faults/, the instant; each from its number.
 
 One trial runs on a bench of its own: the host does its work, the fault comes, the host goes on for as long as its
 errors let it; then the fault is mended, and the robot must be reachable, clear itself and arm.
@@ -15,7 +15,8 @@ from random import Random
 from typing import Any
 
 from hil_sim.bench import Bench
-from hil_sim.faults import LABEL, TABLE, Argument, Fault, Happening, schedule
+from hil_sim.faults.happening import Happening, schedule
+from hil_sim.faults.table import LABEL, TABLE, Argument, Fault
 from hil_sim.link import BOOTED_US, SimLink, open_link
 from hil_sim.robotfile import RobotFile, load
 from host.errors import SoftrigError

@@ -1,10 +1,10 @@
-"""What faults of the serial line and of the I2C bus do to a bench; see mishaps.py for how they are written."""
+"""What faults of the serial line and of the I2C bus do to a bench; see parts.py for how they are written."""
 
 from random import Random
 
 from hil_sim.bench import Bench
 from hil_sim.devices.trouble import BusTrouble, Noise
-from hil_sim.mishaps import Mend, Mishap, Value
+from hil_sim.faults.parts import Mend, Mishap, Value
 
 
 def i2c_nack(bench: Bench, count: Value, draw: Random) -> Mend:

@@ -3,7 +3,7 @@
     seed = 1
 
     [[fault]]
-    name = "coil-open:A"        # a name of hil_sim/faults.py, with what stands after its colon
+    name = "coil-open:A"        # a name of hil_sim/faults/table.py, with what stands after its colon
     at_ms = [1000, 5000]        # a time of the bench's clock, or two between which the seed draws one
     for_ms = 500                # only where the fault can end; a range is drawn, too
 
@@ -20,7 +20,8 @@ from random import Random
 from typing import Any
 
 from hil_sim.bench import Bench
-from hil_sim.faults import Happening, read, schedule
+from hil_sim.faults.happening import Happening, schedule
+from hil_sim.faults.table import read
 from hil_sim.robotcheck import near
 
 TOP = ("seed", "fault")

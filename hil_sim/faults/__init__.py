@@ -1,0 +1,1 @@
+"""What can go wrong on a bench: by name (table), when (happening, file), and what each fault does (parts, lines)."""
