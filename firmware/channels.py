@@ -1,7 +1,8 @@
 """The only code that energises a coil.
 
 Whatever is asked, no coil is on above its duty limit, longer than its order, beyond its cut-off, or without a rest
-after `on_max_ms`. Orders are checked whole before any of it is taken. Outputs are written only when they change.
+after `on_max_ms`. Orders are checked whole before any of it is taken. Outputs are written only when they change; a step
+in which nothing may have changed does not even look.
 `alone` puts the orders aside for a measurement; the next `write` brings them back.
 """
 
@@ -41,6 +42,7 @@ class Channels:
         self._at_once_max = at_once_max
         self._target = array("H", [0] * count)
         self._written = array("H", [0] * count)
+        self._is_written = True  # no output differs from its order
         self._end_ms = array("i", [0] * count)
         self._cutoff_decidegc = array("H", [0] * count)
         self._ramp_ms = array("H", [0] * count)
@@ -72,34 +74,39 @@ class Channels:
 
     def update(self, now_ms: int, temperature_millidegc: array) -> int:
         """End what has run out, move ramps; return a channel that was on for too long, or -1."""
-        if not self.on_mask:
-            return -1
-        for channel in range(self.count):
-            if not self.on_mask >> channel & 1:
-                continue
-            cutoff = self._cutoff_decidegc[channel]
-            if now_ms - self._end_ms[channel] >= 0:
-                self._end(channel, now_ms)
-            elif cutoff and temperature_millidegc[channel] >= cutoff * 100:
-                self._end(channel, now_ms)
-                self.cut_off_mask |= 1 << channel
-            elif now_ms - self._since_ms[channel] > self._coil.on_max_ms:
-                return channel
-            else:
-                self.duty_permille[channel] = self._ramped(channel, now_ms)
+        mask = self.on_mask
+        channel = 0
+        while mask:
+            if mask & 1:
+                cutoff = self._cutoff_decidegc[channel]
+                if now_ms - self._end_ms[channel] >= 0:
+                    self._end(channel, now_ms)
+                elif cutoff and temperature_millidegc[channel] >= cutoff * 100:
+                    self._end(channel, now_ms)
+                    self.cut_off_mask |= 1 << channel
+                elif now_ms - self._since_ms[channel] > self._coil.on_max_ms:
+                    return channel
+                elif self._ramp_ms[channel]:
+                    self._ramp(channel, now_ms)
+            mask >>= 1
+            channel += 1
         return -1
 
     def write(self) -> None:
         """Bring the chips' outputs in line with the orders; OSError when a chip does not answer."""
+        if self._is_written:
+            return
         for channel in range(self.count):
             duty = self.duty_permille[channel]
             if duty != self._written[channel]:
                 chip, output = self._outputs[channel]
                 chip.set(output, duty)
                 self._written[channel] = duty
+        self._is_written = True
 
     def alone(self, channel: int) -> None:
         """Switch every output off and that of one coil, or NONE, full on, whatever was ordered."""
+        self._is_written = False
         for other in range(self.count):
             if self._written[other]:
                 self._written[other] = UNKNOWN  # until the chips have answered
@@ -118,6 +125,7 @@ class Channels:
 
     def forget_written(self) -> None:
         """Take all outputs as off: the chips were reset or switched off behind our back."""
+        self._is_written = False
         for channel in range(self.count):
             self._written[channel] = 0
 
@@ -169,21 +177,24 @@ class Channels:
             self.on_mask |= 1 << channel
         self._target[channel] = duty_permille
         self._begin_ms[channel] = now_ms
-        self.duty_permille[channel] = duty_permille
+        self._drive(channel, duty_permille)
 
     def _end(self, channel: int, now_ms: int) -> None:
         if self.on_mask >> channel & 1 and now_ms - self._since_ms[channel] >= self._coil.on_max_ms:
             self._rested_ms[channel] = now_ms + self._coil.rest_ms
         self.on_mask &= ~(1 << channel)
-        self.duty_permille[channel] = 0
         self._target[channel] = 0
+        self._drive(channel, 0)
 
-    def _ramped(self, channel: int, now_ms: int) -> int:
+    def _ramp(self, channel: int, now_ms: int) -> None:
         ramp_ms = self._ramp_ms[channel]
         passed_ms = now_ms - self._begin_ms[channel]
-        if passed_ms >= ramp_ms:
-            return self._target[channel]
-        return self._target[channel] * passed_ms // ramp_ms
+        target = self._target[channel]
+        self._drive(channel, target if passed_ms >= ramp_ms else target * passed_ms // ramp_ms)
+
+    def _drive(self, channel: int, duty_permille: int) -> None:
+        self.duty_permille[channel] = duty_permille
+        self._is_written = False
 
 
 def bits(mask: int) -> int:

@@ -43,7 +43,8 @@ class Commands:
         """Answer an order whose self-test is done, go on verifying a program that waits to be started."""
         if self._arming >= 0 and self._core.control.selftest.done:
             self._tested()
-        self._verify()
+        if self.upload.request >= 0:
+            self._verify(self.upload.request)
 
     def give_up(self, code: int) -> None:
         """Refuse an order that waits for its self-test."""
@@ -78,11 +79,8 @@ class Commands:
         else:
             self.answer(messages.OK, request=request)
 
-    def _verify(self) -> None:
+    def _verify(self, request: int) -> None:
         """Verify some more of a program that waits to be started, and start it when all is well."""
-        request = self.upload.request
-        if request < 0:
-            return
         try:
             if not self.upload.go_on():
                 return

@@ -143,9 +143,12 @@ class Core:
 
     def lease_left_ms(self) -> int:
         """Return what is left of the lease, 0 when nobody holds it."""
-        if self.lease_ms == 0 or self.link.heard_ms is None:
+        heard_ms = self.link.heard_ms
+        if self.lease_ms == 0 or heard_ms is None:
             return 0
-        return max(0, self.lease_ms - (self.now_ms - max(self._armed_ms, self.link.heard_ms)))
+        since_ms = heard_ms if heard_ms > self._armed_ms else self._armed_ms
+        left_ms = self.lease_ms - (self.now_ms - since_ms)
+        return left_ms if left_ms > 0 else 0
 
     def _begin(self) -> None:
         self.state = messages.IDLE
@@ -174,7 +177,7 @@ class Core:
                 self.commands.serve(received)
 
     def _lease(self) -> None:
-        if self.state not in (messages.ARMED, messages.RUNNING) or self.lease_left_ms():
+        if not messages.ARMED <= self.state <= messages.RUNNING or self.lease_left_ms():
             return
         if not (self.state == messages.RUNNING and self.commands.upload.outlives_host):
             self.disarm(codes.LEASE_EXPIRED, self.lease_ms)

@@ -29,7 +29,7 @@ class FaultLog:
             self.start = struct.unpack("<I", kept[:4])[0] + 1
             for at in range(4, len(kept), messages.FAULT_BYTES):
                 self._faults.append(kept[at : at + messages.FAULT_BYTES])
-        self._unkept = False
+        self.unkept = False  # whether there is something to write down
         self._kept_ms = -KEEP_EVERY_MS
 
     def add(self, now_ms: int, code: int, channel: int, value: int, state: int) -> None:
@@ -38,7 +38,7 @@ class FaultLog:
             self._faults.pop(0)
         fault = (self.start, now_ms, code, channel, value, state, self._cause)
         self._faults.append(struct.pack(messages.FAULT, *fault))
-        self._unkept = True
+        self.unkept = True
 
     def count(self) -> int:
         """Return how many there are."""
@@ -56,10 +56,10 @@ class FaultLog:
 
     def keep(self, now_ms: int) -> None:
         """Write down what is new, if it is time; only to be called while no coil can be on."""
-        if self._unkept and now_ms - self._kept_ms >= KEEP_EVERY_MS:
+        if self.unkept and now_ms - self._kept_ms >= KEEP_EVERY_MS:
             self._kept_ms = now_ms
             self._keep()  # a flash that does not take it is not asked again before the next fault
 
     def _keep(self) -> bool:
-        self._unkept = False
+        self.unkept = False
         return self._store.write(struct.pack("<I", self.start) + b"".join(self._faults))

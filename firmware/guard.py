@@ -36,39 +36,34 @@ class Guard:
             return self.fault(codes.ALERT, sense.current_ma)
         if not BOARD_MIN_DECIDEGC <= sense.board_decidegc <= BOARD_MAX_DECIDEGC:
             return self.fault(codes.SENSOR, sense.board_decidegc)
-        if self._stray(now_ms):
+        if sense.current_ma <= STRAY_MA or self._channels.on_mask:
+            self._stray_since_ms = now_ms
+        elif now_ms - self._stray_since_ms > SETTLE_MS:
             return self.fault(codes.STRAY_CURRENT, sense.current_ma)
         if sense.supply_mv > self._supply.high_mv:
             return self.fault(codes.SUPPLY_HIGH, sense.supply_mv)
         if not powered:
             self._low_since_ms = now_ms
             return 0
+        return self._powered(now_ms, sense)
+
+    def _powered(self, now_ms: int, sense) -> int:
+        """Return the code of what may only be wrong while the supply is on, or 0."""
         if sense.current_ma > self._supply.current_max_ma:
             return self.fault(codes.OVER_CURRENT, sense.current_ma)
-        if self._low(now_ms):
+        if sense.supply_mv >= self._supply.low_mv:
+            self._low_since_ms = now_ms
+        elif now_ms - self._low_since_ms > SETTLE_MS:
             return self.fault(codes.SUPPLY_LOW, sense.supply_mv)
-        return self._heat()
+        return self._heat(sense.hottest, sense.fullest) if sense.hottest >= 0 else 0
 
-    def _heat(self) -> int:
+    def _heat(self, hottest: int, fullest: int) -> int:
         sense = self._sense
-        hottest, fullest = sense.hottest, sense.fullest
-        if hottest < 0:
-            return 0
         if sense.temperature_millidegc[hottest] > self._coil.trip_decidegc * 100:
             return self.fault(codes.OVER_TEMPERATURE, sense.temperature_millidegc[hottest] // 100, hottest)
         if sense.heat_uj[fullest] > self._coil.heat_budget_mj * 1000:
             return self.fault(codes.HEAT_BUDGET, sense.heat_uj[fullest] // 1000, fullest)
         return 0
-
-    def _stray(self, now_ms: int) -> bool:
-        if self._channels.on_mask or self._sense.current_ma <= STRAY_MA:
-            self._stray_since_ms = now_ms
-        return now_ms - self._stray_since_ms > SETTLE_MS
-
-    def _low(self, now_ms: int) -> bool:
-        if self._sense.supply_mv >= self._supply.low_mv:
-            self._low_since_ms = now_ms
-        return now_ms - self._low_since_ms > SETTLE_MS
 
     def fault(self, code: int, value: int, channel: int = 255) -> int:
         """Keep what a fault is about and return its code."""

@@ -9,6 +9,7 @@ from array import array
 from protocol import program
 
 OPS_PER_STEP = 32
+WAIT = program.GUARDS_MAX  # where the condition of the wait is kept, behind those of the guards
 RUNNING, FINISHED, TIMED_OUT, GUARDED, LOST = 0, 1, 2, 3, 4  # LOST: it asked where down is, and nobody knows
 
 
@@ -30,8 +31,13 @@ class Player:
         self._depth = 0
         self._loop_at = array("H", [0] * program.DEPTH_MAX)
         self._loop_left = array("H", [0] * program.DEPTH_MAX)
-        self._guards = array("H", [0] * program.GUARDS_MAX)
+        self._guards = array("H", [0] * program.GUARDS_MAX)  # where they stand in the code
         self._guard_count = 0
+        self._sources = array("B", [0] * (WAIT + 1))  # of the conditions that are looked at on each step
+        self._quantifiers = array("B", [0] * (WAIT + 1))
+        self._compares = array("B", [0] * (WAIT + 1))
+        self._values = array("h", [0] * (WAIT + 1))
+        self._masks = array("i", [0] * (WAIT + 1))
         self._chosen = array("B", [0] * program.AIMS_MAX)
         self._acts = (
             self._halt, self._fire, self._fire, self._delay, self._repeat,
@@ -105,7 +111,8 @@ class Player:
         if not self._waiting:
             self._waiting = True
             self._wait_until_ms = self._cursor_ms + program.number(self.code, self._at + 9, 4)
-        met = self._holds(self._at + 1)
+            self._keep(WAIT, self._at + 1)
+        met = self._holds(WAIT)
         if not met and now_ms - self._wait_until_ms < 0:
             return RUNNING
         if not met and self.code[self._at + 13] == program.ABORT:
@@ -117,9 +124,10 @@ class Player:
     def _guard(self, now_ms: int) -> int:
         """Keep a guard, once: it may stand in a loop."""
         for i in range(self._guard_count):
-            if self._guards[i] == self._at + 1:
+            if self._guards[i] == self._at:
                 return self._go_on()
-        self._guards[self._guard_count] = self._at + 1
+        self._guards[self._guard_count] = self._at
+        self._keep(self._guard_count, self._at + 1)
         self._guard_count += 1
         return self._go_on()
 
@@ -164,38 +172,51 @@ class Player:
 
     def _guarded(self) -> bool:
         for i in range(self._guard_count):
-            if self._holds(self._guards[i]):
+            if self._holds(i):
                 return True
         return False
 
-    def _holds(self, at: int) -> bool:
-        """Evaluate the condition that stands at `at`, without building it."""
+    def _keep(self, place: int, at: int) -> None:
+        """Keep the condition that stands at `at`, taken apart once for all the steps that look at it."""
         code = self.code
-        source, quantifier = code[at], code[at + 1] & 15
-        compare = code[at + 1] >> 4
+        value = program.number(code, at + 2, 2)
+        self._sources[place] = code[at]
+        self._quantifiers[place] = code[at + 1] & 15
+        self._compares[place] = code[at + 1] >> 4
+        self._values[place] = value - 0x10000 if value & 0x8000 else value
+        self._masks[place] = program.number(code, at + 4, 4) if code[at] in program.OF_COILS else 0
+
+    def _holds(self, place: int) -> bool:
+        """Evaluate the condition that is kept there."""
+        source = self._sources[place]
         if source in program.OF_ATTITUDE and not self._attitude.known:
             self._blind = True
             return False
-        mask = program.number(code, at + 4, 4)
-        if quantifier == program.CHOSEN:
+        compare, mask = self._compares[place], self._masks[place]
+        if self._quantifiers[place] == program.CHOSEN:
             mask = 1 << self._chosen[mask]
         if source == program.DOWN:
             return mask >> self._attitude.down_channel() & 1 == compare
-        value = program.number(code, at + 2, 2)
-        value = value - 0x10000 if value & 0x8000 else value
         if source in program.OF_COILS:
-            return self._any_or_all(source, mask, value, compare == program.ABOVE, quantifier == program.ALL)
-        return _compare(self._reading(source), value, compare == program.ABOVE)
+            return self._any_or_all(place, mask)
+        reading, value = self._reading(source), self._values[place]
+        return reading > value if compare == program.ABOVE else reading < value
 
-    def _any_or_all(self, source: int, mask: int, value: int, above: bool, want_all: bool) -> bool:
-        sense = self._sense
-        for channel in range(self._channels.count):
-            if mask >> channel & 1:
-                hot = source == program.TEMPERATURE
-                reading = sense.temperature_millidegc[channel] // 100 if hot else sense.heat_uj[channel] // 1000
-                holds = _compare(reading, value, above)
+    def _any_or_all(self, place: int, mask: int) -> bool:
+        hot = self._sources[place] == program.TEMPERATURE
+        readings = self._sense.temperature_millidegc if hot else self._sense.heat_uj
+        unit = 100 if hot else 1000
+        value, above = self._values[place], self._compares[place] == program.ABOVE
+        want_all = self._quantifiers[place] == program.ALL
+        channel = 0
+        while mask:
+            if mask & 1:
+                reading = readings[channel] // unit
+                holds = reading > value if above else reading < value
                 if holds != want_all:
                     return holds
+            mask >>= 1
+            channel += 1
         return want_all
 
     def _reading(self, source: int) -> int:
@@ -208,7 +229,3 @@ class Player:
         if source == program.PITCH:
             return self._attitude.pitch_decideg()
         return self._sense.board_decidegc
-
-
-def _compare(reading: int, value: int, above: bool) -> bool:
-    return reading > value if above else reading < value

@@ -46,7 +46,7 @@ class Records:
 
     def keep(self) -> None:
         """Write down what is new, if no coil can be on."""
-        if self._core.at_rest():
+        if self.faults.unkept and self._core.at_rest():
             self.faults.keep(self._core.now_ms)
 
     def must_be_cold(self, without: int) -> None:

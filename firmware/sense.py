@@ -32,7 +32,11 @@ class Sense:
         self.board_offset_decidegc = 0  # added to what the thermistor reads
         self._board = board
         self._monitor = monitor
-        self._coil = profile.coil
+        self._coil = coil = profile.coil
+        self._latent_heating = _latent_uj_per_k(coil, coil.as_millidegc, coil.af_millidegc)
+        self._latent_cooling = _latent_uj_per_k(coil, coil.mf_millidegc, coil.ms_millidegc)
+        self._change_millidegc = min(coil.as_millidegc, coil.mf_millidegc)  # below it no phase changes
+        self._austenite_millidegc = max(coil.af_millidegc, coil.ms_millidegc)  # from it on there is no martensite
         self._count = count
         self._turn = 0
         self._stale = 0
@@ -81,31 +85,26 @@ class Sense:
 
         Coils that are on are brought up at each step, the others in turn.
         """
-        self.hottest = self.fullest = -1
         turn = self._turn % self._count
         if not on_mask >> turn & 1:
-            self._catch_up(turn, now_ms, 0)
+            self._heat(turn, now_ms, 0)
+        updated_ms, tenth_uw = self._updated_ms, self._full_uw // 10
+        hottest = fullest = -1
         channel = 0
         while on_mask:
             if on_mask & 1:
-                self._catch_up(channel, self._updated_ms, 0)  # it was off until then, or is up to date
-                self._catch_up(channel, now_ms, self._full_uw // 10 * duty_permille[channel] // 100)
-                self._rank(channel)
+                if self._seen_ms[channel] != updated_ms:
+                    self._heat(channel, updated_ms, 0)  # it was off until then
+                self._heat(channel, now_ms, tenth_uw * duty_permille[channel] // 100)
+                if hottest < 0 or self.temperature_millidegc[channel] > self.temperature_millidegc[hottest]:
+                    hottest = channel
+                if fullest < 0 or self.heat_uj[channel] > self.heat_uj[fullest]:
+                    fullest = channel
             on_mask >>= 1
             channel += 1
+        self.hottest = hottest
+        self.fullest = fullest
         self._updated_ms = now_ms
-
-    def _catch_up(self, channel: int, now_ms: int, power_uw: int) -> None:
-        passed_ms = now_ms - self._seen_ms[channel]
-        if passed_ms:
-            self._seen_ms[channel] = now_ms
-            self._heat(channel, power_uw, passed_ms)
-
-    def _rank(self, channel: int) -> None:
-        if self.hottest < 0 or self.temperature_millidegc[channel] > self.temperature_millidegc[self.hottest]:
-            self.hottest = channel
-        if self.fullest < 0 or self.heat_uj[channel] > self.heat_uj[self.fullest]:
-            self.fullest = channel
 
     def _read_board(self) -> None:
         self.board_decidegc = self._board.board_decidegc() + self.board_offset_decidegc
@@ -116,8 +115,12 @@ class Sense:
         self.supply_mv = self._monitor.voltage_mv()
         self._full_uw = full_power_uw(self.supply_mv, self._coil.resistance_mohm, self._coil.wiring_mohm)
 
-    def _heat(self, channel: int, power_uw: int, passed_ms: int) -> None:
-        """Move one estimate over `passed_ms` at constant power."""
+    def _heat(self, channel: int, now_ms: int, power_uw: int) -> None:
+        """Move one estimate up to now at constant power."""
+        passed_ms = now_ms - self._seen_ms[channel]
+        if not passed_ms:
+            return
+        self._seen_ms[channel] = now_ms
         coil = self._coil
         heat_uj = self.heat_uj[channel]
         heat_uj += power_uw * passed_ms // 1000 - heat_uj * passed_ms // coil.heat_leak_ms
@@ -125,13 +128,15 @@ class Sense:
         t = self.temperature_millidegc[channel]
         loss_uw = (t // 100 - self._ambient_decidegc) * coil.loss_uw_per_k // 10
         energy_nj = (power_uw - loss_uw) * passed_ms + self._rest_nj[channel]
-        capacity = coil.heat_capacity_uj_per_k + self._latent_uj_per_k(channel, t, energy_nj)
+        capacity = coil.heat_capacity_uj_per_k
+        if t >= self._change_millidegc:
+            capacity += self._latent(channel, t, energy_nj)
         moved = energy_nj // capacity
         self._rest_nj[channel] = energy_nj - moved * capacity
         self.temperature_millidegc[channel] = t + moved
         self._transform(channel, t + moved)
 
-    def _latent_uj_per_k(self, channel: int, t: int, energy_nj: int) -> int:
+    def _latent(self, channel: int, t: int, energy_nj: int) -> int:
         """Return the apparent heat capacity of the phase change where one is going on.
 
         A coil that was cooled in between and is heated again takes no latent heat before it is back on its heating
@@ -141,9 +146,9 @@ class Sense:
         coil = self._coil
         martensite = self._martensite_permille[channel]
         if energy_nj > 0 and coil.as_millidegc <= t < coil.af_millidegc and martensite >= self._most_permille(t):
-            return coil.latent_uj * 10 // ((coil.af_millidegc - coil.as_millidegc) // 100)  # below 2**30
+            return self._latent_heating
         if energy_nj < 0 and coil.mf_millidegc < t <= coil.ms_millidegc and martensite < 1000:
-            return coil.latent_uj * 10 // ((coil.ms_millidegc - coil.mf_millidegc) // 100)
+            return self._latent_cooling
         return 0
 
     def _most_permille(self, t: int) -> int:
@@ -153,12 +158,23 @@ class Sense:
     def _transform(self, channel: int, t: int) -> None:
         """Hold the martensite fraction between its heating and cooling lines."""
         coil = self._coil
-        most = self._most_permille(t)
-        least = 1000 * (coil.ms_millidegc - t) // (coil.ms_millidegc - coil.mf_millidegc)
-        martensite = self._martensite_permille[channel]
-        martensite = min(martensite, most)
-        martensite = max(martensite, least)
-        self._martensite_permille[channel] = 0 if martensite < 0 else 1000 if martensite > 1000 else martensite
+        if t <= coil.mf_millidegc:
+            martensite = 1000
+        elif t >= self._austenite_millidegc:
+            martensite = 0
+        else:
+            most = self._most_permille(t)
+            least = 1000 * (coil.ms_millidegc - t) // (coil.ms_millidegc - coil.mf_millidegc)
+            martensite = self._martensite_permille[channel]
+            martensite = most if martensite > most else martensite
+            martensite = least if martensite < least else martensite
+            martensite = 0 if martensite < 0 else martensite
+        self._martensite_permille[channel] = martensite
+
+
+def _latent_uj_per_k(coil, begin_millidegc: int, end_millidegc: int) -> int:
+    """Return the latent heat spread over a phase change between two temperatures."""
+    return coil.latent_uj * 10 // ((end_millidegc - begin_millidegc) // 100)  # below 2**30
 
 
 def full_power_uw(supply_mv: int, resistance_mohm: int, wiring_mohm: int) -> int:

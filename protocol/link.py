@@ -114,6 +114,8 @@ class Link:
 
         No frame is begun that might not fit into `room` bytes; what is left comes with a later call.
         """
+        if not (self._waiting or self._posts or self._ack_due):
+            return b""
         out = []
         for waiting in self._waiting[:WINDOW]:
             if room >= FRAME_MAX and self._due(waiting, now_ms):
