@@ -98,12 +98,13 @@ def script():
 def enter(core, state):
     """Bring a core into a state by the shortest way."""
     if state != "idle":
-        core.link.heard_ms = core.now_ms
         core.arm(60_000)
     if state == "firing":
         core.channels.fire(0b11, 300, 9000, core.now_ms)
     if state == "running":
         core.start(script())
+    core.link.reset(core.link.decoder.seed)  # a host has acknowledged what it was told
+    core.link.heard_ms = core.now_ms
 
 
 def main(path, pairs):
