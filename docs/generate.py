@@ -12,12 +12,10 @@ from pathlib import Path
 
 import click
 
-from docs import hardwarepage, meanings, schematic
-from hil_sim.faults.table import TABLE as FAULTS
+from docs import faultspage, hardwarepage, meanings, schematic
 from host.cli import main as softrig
 from host.gait.errors import ROWS
 from protocol import causes, frames, link, messages, program
-from tests import fault_table
 
 DOCS = Path(__file__).parent
 ROBOTS = DOCS.parent / "firmware" / "robots"
@@ -164,32 +162,7 @@ def hardware_page() -> str:
 
 def faults_page() -> str:
     """Return what can go wrong on the bench and what is promised then."""
-    names = [(f"`{fault.spelled}`", fault.about, "lasts" if fault.ends else "") for fault in FAULTS]
-    situations = "\n".join(
-        f"* *{name}*: {'; '.join(f'`{line}`' for line in script.splitlines())}"
-        for name, (script, _) in fault_table.ORDERS.items()
-    )
-    return (
-        (DOCS / "templates" / "faults.md")
-        .read_text(encoding="utf-8")
-        .format(
-            example=fault_table.EXAMPLE,
-            names=table(("name", "what happens", ""), names),
-            promises=table(
-                ("fault", "while", "code", "off [ms]", "ends as", "exit", "way back", "because"),
-                [promise(row) for row in fault_table.ROWS],
-            ),
-            situations=situations.format(one="A", two="A B") + "\n",
-        )
-    )
-
-
-def promise(row: fault_table.Row) -> tuple[str, ...]:
-    """Return one promise as a row of a table."""
-    where = row.during if row.robot == "circular" else f"{row.during}, {row.robot}"
-    off = "-" if row.off_ms is None else str(row.off_ms)
-    status = " or ".join(map(str, row.exit_codes))
-    return f"`{row.fault}`", where, row.code or "-", off, row.ending, status, row.recovers, row.why
+    return (DOCS / "templates" / "faults.md").read_text(encoding="utf-8").format(**faultspage.fields(table))
 
 
 def limits_page() -> str:
