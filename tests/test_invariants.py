@@ -60,6 +60,7 @@ def played(rig: HilRig) -> None:
 
 ENDS = "if now_ms - self._end_ms[channel] >= 0:"
 LEASE_LEFT, LIVES = "def lease_left_ms(self) -> int:", " return self.lease_ms\n    def _(self):"
+LOOKS = "return self._heat(sense.hottest, sense.fullest) if sense.hottest >= 0 else 0"
 ORDER_END = "self._end_ms[channel] = now_ms + hold_ms"
 LOSSES = [
     ("channels.py", ENDS, "if False:", long_order, "on for 6.* ms that no order allows"),
@@ -81,8 +82,8 @@ LOSSES = [
         deserted,
         "on for 1.* ms beyond the lease",
     ),
-    ("guard.py", "return self._heat()", "return 0", glowing, "its trip is 120 C"),
-    ("guard.py", "return self._heat()", "return 0", glowing, "its heat budget is 520 mJ"),
+    ("guard.py", LOOKS, "return 0", glowing, "its trip is 120 C"),
+    ("guard.py", LOOKS, "return 0", glowing, "its heat budget is 520 mJ"),
     (
         "channels.py",
         "elif now_ms - self._since_ms[channel] > self._coil.on_max_ms:",
