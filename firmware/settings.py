@@ -85,11 +85,17 @@ class Settings:
         self.source = messages.STORED
 
     def _take(self, record: bytes | None) -> bool:
-        """Take what the store kept; False when that is none of ours."""
-        if record is None or len(record) != _HEAD_BYTES + 2 * len(self.measured_mohm):
+        """Take what the store kept; False when that is none of ours, or could not have been set."""
+        count = len(self.measured_mohm)
+        if record is None or len(record) != _HEAD_BYTES + 2 * count:
             return False
-        self.node, self.board_offset_decidegc = struct.unpack(_HEAD, record[:_HEAD_BYTES])
-        for channel in range(len(self.measured_mohm)):
-            at = _HEAD_BYTES + 2 * channel
-            self.measured_mohm[channel] = record[at] | record[at + 1] << 8
+        node, offset_decidegc, *measured_mohm = struct.unpack(_HEAD + "H" * count, record)
+        kept = [(messages.NODE, 0, node), (messages.BOARD_OFFSET, 0, offset_decidegc)]
+        kept += [(messages.RESISTANCE, channel, measured_mohm[channel]) for channel in range(count)]
+        for setting, channel, value in kept:
+            low, high = self._range(setting, channel, value)
+            if not low <= value <= high:
+                return False
+        for setting, channel, value in kept:
+            self._set(setting, channel, value)
         return True

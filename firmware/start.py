@@ -23,6 +23,7 @@ COPIES = ("/boot.0", "/boot.1")
 HEAD = "<2sBxIH"  # mark, version, sequence, length
 SLOT, TRIES, FALLBACK, SERVICE = 0, 1, 2, 3
 CONFIRMED = NOWHERE = 255
+SEQUENCES = 1 << 30  # a flash is worn out long before
 STRAP = 22
 GARBAGE_BYTES = 8192  # collected so often while modules are compiled, their remains leave no holes in the heap
 START_MS = 8000  # to import the program, or to write the flash
@@ -39,7 +40,7 @@ def load() -> list:
             continue
         if len(raw) == 18 and raw[:3] == b"sr\x01" and struct.unpack("<I", raw[14:])[0] == crc32(raw[:14]):
             sequence = struct.unpack("<I", raw[4:8])[0]
-            if sequence > newest[0]:
+            if newest[0] < sequence < SEQUENCES and raw[10] < len(SLOTS):
                 newest = [sequence, bytearray(raw[10:14])]
     return newest
 
@@ -79,7 +80,7 @@ def chosen(sequence: int, fields: bytearray) -> bool:
         return True
     if fields[TRIES]:
         fields[TRIES] -= 1
-    elif fields[FALLBACK] == NOWHERE:
+    elif fields[FALLBACK] >= len(SLOTS):
         return False
     else:
         fields[SLOT], fields[TRIES], fields[FALLBACK] = fields[FALLBACK], CONFIRMED, NOWHERE

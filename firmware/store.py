@@ -15,6 +15,7 @@ from binascii import crc32
 _HEAD = "<2sBxIH"  # mark, version, sequence, length
 _HEAD_BYTES = struct.calcsize(_HEAD)
 _MARK = b"sr"
+_SEQUENCES = 1 << 30  # a flash is worn out long before, and a board's small integers end there
 
 
 class Store:
@@ -76,6 +77,8 @@ def _record(raw: bytes | None) -> tuple | None:
         return None
     mark, version, sequence, length = struct.unpack(_HEAD, raw[:_HEAD_BYTES])
     end = _HEAD_BYTES + length
-    if mark != _MARK or len(raw) != end + 4 or struct.unpack("<I", raw[end:])[0] != crc32(raw[:end]):
+    if mark != _MARK or sequence >= _SEQUENCES or len(raw) != end + 4:
+        return None
+    if struct.unpack("<I", raw[end:])[0] != crc32(raw[:end]):
         return None
     return version, sequence, raw[_HEAD_BYTES:end]

@@ -25,7 +25,7 @@ class Trial:
         if core.state == messages.TRIPPED and core.code not in NOT_ITS_FAULT:
             self._ill_ms = now_ms
             return self._is_new and now_ms >= GIVEN_UP_MS
-        if now_ms - self._ill_ms >= HEALTHY_MS and core.state in (messages.IDLE, messages.TRIPPED):
+        if now_ms - self._ill_ms >= HEALTHY_MS and core.at_rest():
             if self._settled():
                 core.board.watch()
             self._settled = None

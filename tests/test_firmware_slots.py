@@ -4,7 +4,9 @@ import pytest
 
 from firmware.core import Core
 from firmware.profile import Profile
+from firmware.trial import Trial
 from hil_sim.worlds import cpython, micropython
+from host.deploy.bootrecord import BootRecord
 from protocol import codes, messages
 from tests.firmware_bench import Table
 from tests.slot_bench import CONFIRMED, NOWHERE, PROFILE, REAL, fields, record, said, slot_bench, small
@@ -151,6 +153,37 @@ def test_the_newer_copy_of_the_record_counts():
     bench.board.flash.store("boot.0", record(0, sequence=6))
 
     assert said(settled(bench))[0] == "b"
+
+
+@WORLDS
+@pytest.mark.parametrize("absurd", [{"slot": 7}, {"slot": 1, "tries": 3, "sequence": 0xFFFFFFFF}])
+def test_a_record_that_cannot_be_is_none(absurd, execute):
+    bench = settled(slot_bench(BOTH, record(**absurd), execute))
+
+    assert said(bench)[0] == "a"
+    assert bench.world.crashes == []
+    assert BootRecord.newest([record(**absurd)]) is None
+
+
+def test_a_slot_that_is_not_there_is_nothing_to_fall_back_to():
+    bench = settled(slot_bench(BOTH, record(0, tries=0, fallback=9)))
+
+    assert said(bench) == ["softrig: service"]
+
+
+def test_a_slot_is_not_confirmed_while_coils_are_tested():
+    """That writes the flash, which stops the processor for longer than the heartbeat may rest."""
+    core = Core(Table(), Profile(PROFILE), boot=1)
+    core.step(5, b"", 512)
+    calls = []
+    trial = Trial(True, lambda: calls.append(1))
+    core.control.selftest.begin(0)
+    assert not trial.over(6000, core)
+    assert calls == []
+
+    core.control.selftest.cancel()
+    trial.over(6005, core)
+    assert calls == [1]
 
 
 @pytest.mark.parametrize("operation", range(1, 9))

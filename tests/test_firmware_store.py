@@ -1,6 +1,8 @@
 """Records on the flash: what was written is read again, and a cut leaves the record before it or the new one."""
 
+import struct
 from array import array
+from binascii import crc32
 
 import pytest
 
@@ -177,6 +179,29 @@ def test_settings_of_another_shape_are_damage_and_the_defaults_stand(record):
     store_on(flash, "settings").write(record)
 
     assert (settings_on(flash).source, settings_on(flash).node) == (messages.DAMAGED, 1)
+
+
+@pytest.mark.parametrize("head", [(0, 0), (127, 0), (1, 101), (1, -101), (1, 0x7FFF)])
+@pytest.mark.parametrize("mohm", [0, 1, 0xFFFF])
+def test_settings_that_could_not_have_been_set_are_damage_and_the_defaults_stand(head, mohm):
+    """As 32767 of the board's offset, with which its temperature fits in no status: the firmware died of it."""
+    flash = Flash({})
+    store_on(flash, "settings").write(struct.pack("<Bh8H", *head, *[mohm] * 8))
+
+    settings = settings_on(flash)
+
+    assert (settings.source, settings.packed()) == (messages.DAMAGED, settings_on(Flash({})).packed())
+
+
+@pytest.mark.parametrize("sequence", [1 << 30, 0xFFFFFFFF])
+def test_a_record_whose_number_no_flash_can_reach_is_none_and_the_next_one_counts(sequence):
+    flash = Flash({})
+    body = struct.pack("<2sBxIH", b"sr", 1, sequence, 3) + b"old"
+    flash.store("x.0", body + struct.pack("<I", crc32(body)))
+
+    assert store_on(flash).read() is None
+    assert store_on(flash).write(b"new")
+    assert store_on(flash).read() == b"new"
 
 
 def test_settings_that_the_flash_does_not_take_do_not_count():

@@ -17,6 +17,7 @@ CONFIRMED = NOWHERE = 255
 TRIES = 3
 _RECORD = struct.Struct("<2sBxIH4B")
 _MARK, _VERSION, _FIELDS = b"sr", 1, 4
+_SEQUENCES = 1 << 30  # as the board has it
 
 
 @dataclass(frozen=True)
@@ -62,4 +63,4 @@ def _unpacked(raw: bytes | None) -> BootRecord | None:
     mark, version, sequence, length, *fields = _RECORD.unpack(body)
     if (mark, version, length) != (_MARK, _VERSION, _FIELDS) or raw[_RECORD.size :] != struct.pack("<I", crc32(body)):
         return None
-    return BootRecord(sequence, *fields)
+    return BootRecord(sequence, *fields) if sequence < _SEQUENCES and fields[0] < len(SLOTS) else None
