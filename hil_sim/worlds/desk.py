@@ -14,7 +14,7 @@ from struct import Struct
 from types import ModuleType
 from typing import Any
 
-from hil_sim.worlds.costs import TICKS_US
+from hil_sim.worlds.costs import PIN_US, TICKS_US, WATCHDOG_US
 from hil_sim.worlds.files import Files
 from hil_sim.worlds.lines import I2C, UART
 from hil_sim.worlds.machine import WDT, machine_module, time_module
@@ -23,7 +23,7 @@ from hil_sim.worlds.processor import Processor
 from hil_sim.worlds.world import Crashed, Interrupted
 
 PIN_SET, PIN_GET, I2C_WRITE, I2C_READ, UART_READ, UART_WRITE, CONVERT, FEED, SLEEP, TIME, CALL, CRASH, READ = range(13)
-POSTED = (PIN_SET, FEED)  # they have no answer
+POSTED = (PIN_SET, FEED, SLEEP)  # they have no answer, unless they carry data
 WITHOUT_DATA = (I2C_READ, UART_READ)  # their length is how many bytes are wanted
 DONE, OS_ERROR, OTHER_ERROR, INTERRUPTED = range(4)
 FILLED = {"readinto": 0, "readfrom_into": 1, "readfrom_mem_into": 2, "write_readinto": 1}  # which argument is filled
@@ -53,23 +53,24 @@ class Desk:
     def serve(self, head: Request, data: bytes) -> bytes | None:
         """Serve one request; return the answer, or None when it needs none."""
         op, which, ticks, length, argument = head
+        value, extra, status = 0, b"", INTERRUPTED
         try:
-            for _ in range(ticks):
-                self._processor.spend(TICKS_US)
-            value, extra = self._acts[op](self._objects[which], length, argument, data)
-            status = DONE
+            if not self._interrupted:
+                for _ in range(ticks):
+                    self._processor.spend(TICKS_US)
+                value, extra = self._acts[op](self._objects[which], length, argument, data)
+                status = DONE
         except Interrupted:
-            value, extra, status = 0, b"", INTERRUPTED
+            pass
         except OSError as error:
-            value, extra, status = int(error.args[0]), b"", OS_ERROR
+            value, status = int(error.args[0]), OS_ERROR
         except (ValueError, TypeError, AttributeError, RuntimeError) as error:
             extra, status = json.dumps([type(error).__name__, str(error)]).encode(), OTHER_ERROR
             value = len(extra)
-        if op in POSTED:
-            self._interrupted |= status == INTERRUPTED  # felt with the next request that is answered
+        posted = op in POSTED and not data
+        self._interrupted = posted and status == INTERRUPTED  # felt with the next request that is answered
+        if posted:
             return None
-        if self._interrupted:
-            self._interrupted, value, extra, status = False, 0, b"", INTERRUPTED
         now_us = self._processor.ticks_us()
         return _ANSWER.pack(now_us & _LOW, now_us >> 30, status, value) + extra
 
@@ -80,6 +81,10 @@ class Desk:
         values = {name: member for name, member in members.items() if isinstance(member, int)}
         functions = [name for name in members if name not in classes and name not in values]
         return [classes, values, functions]
+
+    def costs_us(self) -> list[int]:
+        """Return what setting a pin and feeding the watchdog cost, which are not asked for their time."""
+        return [PIN_US, WATCHDOG_US]
 
     def paths(self) -> list[str]:
         """Return the paths of all files on the flash."""

@@ -3,7 +3,8 @@
 A request is eight bytes (operation, object, ticks read since the last one, length, argument), then its data. The
 answer is four words, the time since reset, status and value, then its data. No virtual time passes between two
 requests, so reading the clock needs none: it is counted, and told with the next. What needs no answer (a pin that is
-set, the watchdog that is fed) waits for the next request that does. hil_sim/worlds/desk.py is the other end.
+set, the watchdog that is fed, a sleep) waits for the next request that does; the time that it takes is known here.
+hil_sim/worlds/desk.py is the other end.
 
 Memory is allocated for nothing that a control step does.
 """
@@ -28,6 +29,8 @@ class Line:
 
     def __init__(self, fd: int) -> None:
         self.ticks = 0  # read since the last request, each costs its time
+        self._ahead_us = 0  # what the requests cost that wait to be sent, and the ticks before them
+        self._sleeps = False  # one of them is a sleep
         self._file = open(fd, "r+b")
         self._out = bytearray(_POSTED_MAX + 2 * HEAD)
         self._end = 0  # of what waits to be sent
@@ -37,15 +40,21 @@ class Line:
     def now_us(self) -> int:
         """Return the time since reset, after a look at the clock that costs one tick."""
         self.ticks += 1
-        if self._end or self.ticks >= _TICKS_MAX:
-            self.ask(TIME, 0, 0)
-        return self._answer[0] + (self._answer[1] << 30) + self.ticks
+        if self.ticks >= _TICKS_MAX:
+            self.flush()
+        return self._answer[0] + (self._answer[1] << 30) + self._ahead_us + self.ticks
 
-    def post(self, op: int, which: int, argument: int) -> None:
-        """Make a request that has no answer; it goes out with the next one."""
-        if self._end > _POSTED_MAX:
-            self.ask(TIME, 0, 0)
+    def post(self, op: int, which: int, argument: int, cost_us: int) -> None:
+        """Make a request that has no answer; it goes out with the next one, or with the next sleep."""
+        if self._end > _POSTED_MAX or (op == SLEEP and self._sleeps):
+            self.flush()
+        self._sleeps |= op == SLEEP
+        self._ahead_us += self.ticks + cost_us
         self._put(op, which, 0, argument)
+
+    def flush(self) -> None:
+        """Have all that waits done."""
+        self.ask(TIME, 0, 0)
 
     def ask(self, op: int, which: int, argument: int, data=None, count: int = 0) -> int:
         """Make a request with data, or for `count` bytes; return its value or raise what it raised."""
@@ -57,6 +66,8 @@ class Line:
             self._end = 0
         if self._file.readinto(self._answer) != 16:
             raise SystemExit  # the bench is gone
+        self._ahead_us = 0
+        self._sleeps = False
         if self._answer[2]:
             self._fail(self._answer[2], self._answer[3])
         return self._answer[3]

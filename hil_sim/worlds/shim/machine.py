@@ -7,6 +7,8 @@ constants and functions are those of the bench's own module, which tells them at
 from bench import ADC as CONVERT
 from bench import DESK, FEED, I2C_READ, I2C_WRITE, MACHINE, PIN_GET, PIN_SET, UART_READ, UART_WRITE, Remote, line
 
+PIN_US, WATCHDOG_US = line.call(DESK, "costs_us")
+
 
 class Pin(Remote):
     """A pin; the same object for the same number."""
@@ -26,7 +28,7 @@ class Pin(Remote):
         """Return the level, or set it."""
         if level is None:
             return line.ask(PIN_GET, self.which, 0)
-        line.post(PIN_SET, self.which, 1 if level else 0)
+        line.post(PIN_SET, self.which, 1 if level else 0, PIN_US)
         return None
 
     __call__ = value
@@ -85,7 +87,7 @@ class WDT(Remote):
 
     def feed(self):
         """Start the time-out anew."""
-        line.post(FEED, self.which, 0)
+        line.post(FEED, self.which, 0, WATCHDOG_US)
 
 
 def _function(name):

@@ -127,6 +127,7 @@ def main() -> None:
     try:
         run("boot.py", space)
         run("main.py", space)
+        line.flush()
     except BaseException as error:
         line.ask(CRASH, 0, 0, told(error).encode())
 

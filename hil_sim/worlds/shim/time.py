@@ -31,7 +31,11 @@ def ticks_diff(later, earlier):
 
 def sleep_us(us):
     """Let time pass."""
-    line.ask(SLEEP, 0, us) if us < 1 << 16 else line.ask(SLEEP, 0, 0, us.to_bytes(8, "little"))
+    us = max(us, 1)
+    if us < 1 << 16:
+        line.post(SLEEP, 0, us, us)
+    else:
+        line.ask(SLEEP, 0, 0, us.to_bytes(8, "little"))
 
 
 def sleep_ms(ms):
