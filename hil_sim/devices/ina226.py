@@ -101,7 +101,8 @@ class Ina226:
 
     def alert_level(self) -> int:
         """Return the level of the open-drain alert pin with its pull-up: 0 while it alerts."""
-        self.catch_up()
+        if not self._quiet:
+            self.catch_up()
         return self._pin()
 
     def answers(self, address: int) -> bool:
@@ -110,10 +111,10 @@ class Ina226:
 
     def write(self, address: int, data: bytes) -> int:
         """Take a register pointer and, where there are two more bytes, a value."""
-        self.catch_up()
         if data:
             self._pointer = data[0]
         if len(data) >= 3:
+            self.catch_up()
             self._settled = False
             if self._converter.cycle_us:
                 self._converter.convert(self._clock.now_us)
