@@ -4,7 +4,10 @@ import pytest
 
 from firmware import heap
 from firmware.tasks import CONTROL, RECEIVE, SEND, Tasks
+from hil_sim.address import parse
+from hil_sim.assembly import assemble
 from tests.firmware_bench import Rig
+from tests.sabotage import sabotage
 
 
 @pytest.fixture
@@ -49,6 +52,27 @@ def test_a_step_of_the_core_reports_for_receiving_and_control_and_leaves_sending
     assert not rig.core.tasks.complete()
     rig.core.tasks.report(SEND)
     assert rig.core.tasks.complete()
+
+
+@pytest.mark.parametrize(("file", "task"), [("core.py", "RECEIVE"), ("core.py", "CONTROL"), ("main.py", "SEND")])
+def test_a_loop_that_goes_round_without_a_task_is_restarted(monkeypatch, file, task):
+    sabotage(monkeypatch, file, f"tasks.report({task})", "tasks.report(0)")
+    bench = assemble(parse("sim:circular?body=still"))
+
+    bench.run(1)
+    bench.close()
+
+    assert bench.crashes == []
+    assert bench.world.resets > 0
+
+
+def test_a_loop_that_does_all_is_never_restarted():
+    bench = assemble(parse("sim:circular?body=still"))
+
+    bench.run(3)
+    bench.close()
+
+    assert bench.world.resets == 0
 
 
 def test_the_interpreter_does_not_collect_by_itself(collected):
