@@ -140,7 +140,8 @@ class Supply:
 
     def peak_shunt_v(self) -> float:
         """Return the greatest voltage across the shunt in the PWM period."""
-        return self._shunt_ohm * max(self._circuit.current[: self._intervals].tolist())
+        currents_a: list[float] = self._circuit.current[: self._intervals].tolist()
+        return self._shunt_ohm * max(currents_a)
 
     def integrals_vus(
         self, begun_us: int, from_us: int, until_us: int, shunt_us: int, bus_us: int
