@@ -39,6 +39,7 @@ class Channels:
         self._chips = chips
         self._outputs = outputs
         self._coil = coil
+        self._on_max_ms = coil.on_max_ms
         self._at_once_max = at_once_max
         self._target = array("H", [0] * count)
         self._written = array("H", [0] * count)
@@ -74,8 +75,7 @@ class Channels:
 
     def update(self, now_ms: int, temperature_millidegc: array) -> int:
         """End what has run out, move ramps; return a channel that was on for too long, or -1."""
-        mask = self.on_mask
-        channel = 0
+        mask, channel = self.on_mask, 0
         while mask:
             if mask & 1:
                 cutoff = self._cutoff_decidegc[channel]
@@ -84,7 +84,7 @@ class Channels:
                 elif cutoff and temperature_millidegc[channel] >= cutoff * 100:
                     self._end(channel, now_ms)
                     self.cut_off_mask |= 1 << channel
-                elif now_ms - self._since_ms[channel] > self._coil.on_max_ms:
+                elif now_ms - self._since_ms[channel] > self._on_max_ms:
                     return channel
                 elif self._ramp_ms[channel]:
                     self._ramp(channel, now_ms)
@@ -180,7 +180,7 @@ class Channels:
         self._drive(channel, duty_permille)
 
     def _end(self, channel: int, now_ms: int) -> None:
-        if self.on_mask >> channel & 1 and now_ms - self._since_ms[channel] >= self._coil.on_max_ms:
+        if self.on_mask >> channel & 1 and now_ms - self._since_ms[channel] >= self._on_max_ms:
             self._rested_ms[channel] = now_ms + self._coil.rest_ms
         self.on_mask &= ~(1 << channel)
         self._target[channel] = 0

@@ -5,7 +5,7 @@ core's. An error of a chip is answered by one more try, then by a fault.
 """
 
 from firmware.attitude import Attitude, Blind
-from firmware.channels import Channels, Refused
+from firmware.channels import NONE, Channels, Refused
 from firmware.guard import Guard
 from firmware.patrol import Patrol
 from firmware.player import GUARDED, LOST, Player
@@ -77,32 +77,37 @@ class Control:
 
     def step(self, now_ms: int, state: int) -> int:
         """Sense, guard, sequence, drive and measure once; return the code of a fault, or 0."""
-        self.sense.update(now_ms, self.channels.on_mask, self.channels.duty_permille)
-        self.slot.end()  # if an error has left it open
-        self.sense.read()
+        sense, channels = self.sense, self.channels
+        sense.update(now_ms, channels.on_mask, channels.duty_permille)
+        if self.slot.begun:  # an error has left it open
+            self.slot.end()
+        sense.read()
         self.attitude.look(now_ms)
-        powered = messages.ARMED <= state <= messages.RUNNING
-        code = self.guard.check(now_ms, powered or self.selftest.running)
+        powered = messages.ARMED <= state <= messages.RUNNING or self.selftest.running
+        code = self.guard.check(now_ms, powered)
         if not code and state == messages.RUNNING:
             code = self._play(now_ms)
-        too_long = self.channels.update(now_ms, self.sense.temperature_millidegc)
+        too_long = channels.update(now_ms, sense.temperature_millidegc) if channels.on_mask else NONE
         if too_long >= 0 and not code:
-            code = self.guard.fault(codes.ON_TOO_LONG, self.channels.on_for_ms(too_long, now_ms), too_long)
-        if not code:
-            code = self._measure(powered)
-        self._check_chips(now_ms, state)
-        self.channels.write()
+            code = self.guard.fault(codes.ON_TOO_LONG, channels.on_for_ms(too_long, now_ms), too_long)
+        if powered and not code:
+            code = self._measure()
+        self._turn += 1
+        if self._turn >= CHECK_EVERY and state != messages.TRIPPED:
+            self._check_chips(now_ms)
+        channels.write()
         self.board.beat()
         return code
 
-    def _measure(self, powered: bool) -> int:
+    def _measure(self) -> int:
         """Go on with the self-test, whose findings refuse the arming, or with the patrol, whose findings trip."""
         if self.selftest.running:
             self.selftest.step()
             return self._doubted(self.selftest.code) and self._pressed()
-        found = self.patrol.step() if powered else 0
-        if not self._doubted(found):
+        found = self.patrol.step()
+        if not found:
             return 0
+        self._doubted(found)
         return self._pressed() or self.guard.fault(found, self.patrol.value, self.patrol.channel)
 
     def _doubted(self, found: int) -> int:
@@ -122,14 +127,11 @@ class Control:
             return self.guard.fault(codes.REFUSED_STEP, refused.value, refused.channel)
         return codes.GUARD if outcome == GUARDED else codes.ATTITUDE if outcome == LOST else 0
 
-    def _check_chips(self, now_ms: int, state: int) -> None:
+    def _check_chips(self, now_ms: int) -> None:
         """Look in turn whether a chip has lost its settings, as after a brown-out.
 
         With nothing on, say so again: a write that went astray may have left a coil on too weakly for the guard.
         """
-        self._turn += 1
-        if self._turn < CHECK_EVERY or state == messages.TRIPPED:
-            return
         for chip in self.chips:
             if not chip.configured():
                 raise OSError(chip.address)

@@ -60,13 +60,15 @@ class Core:
         if data:
             self._receive(data)
         self.tasks.report(RECEIVE)
-        self._lease()
+        if messages.ARMED <= self.state <= messages.RUNNING and not self.lease_left_ms():
+            self._end_lease()
         self.commands.go_on()
         code = self.control.tried(now_ms, self.state)
         self.tasks.report(CONTROL)
         if code:
             self.trip(code, self.guard.channel, self.guard.value)
-        self._end_program()
+        if self.state == messages.RUNNING:
+            self._end_program()
         self.reports.tell()
         return self.link.poll(now_ms, room)
 
@@ -176,15 +178,11 @@ class Core:
             else:
                 self.commands.serve(received)
 
-    def _lease(self) -> None:
-        if not messages.ARMED <= self.state <= messages.RUNNING or self.lease_left_ms():
-            return
+    def _end_lease(self) -> None:
         if not (self.state == messages.RUNNING and self.commands.upload.outlives_host):
             self.disarm(codes.LEASE_EXPIRED, self.lease_ms)
 
     def _end_program(self) -> None:
-        if self.state != messages.RUNNING:
-            return
         if self.player.outcome == FINISHED:
             self.end_program(messages.FINISHED)
         elif self.player.outcome == TIMED_OUT:

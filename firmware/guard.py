@@ -17,8 +17,11 @@ class Guard:
     def __init__(self, profile, sense, channels, board) -> None:
         self.channel = 255  # of the fault that `check` returned last
         self.value = 0
-        self._coil = profile.coil
-        self._supply = profile.supply
+        self._trip_millidegc = profile.coil.trip_decidegc * 100
+        self._budget_uj = profile.coil.heat_budget_mj * 1000
+        self._current_max_ma = profile.supply.current_max_ma
+        self._low_mv = profile.supply.low_mv
+        self._high_mv = profile.supply.high_mv
         self._sense = sense
         self._channels = channels
         self._board = board
@@ -40,28 +43,28 @@ class Guard:
             self._stray_since_ms = now_ms
         elif now_ms - self._stray_since_ms > SETTLE_MS:
             return self.fault(codes.STRAY_CURRENT, sense.current_ma)
-        if sense.supply_mv > self._supply.high_mv:
+        if sense.supply_mv > self._high_mv:
             return self.fault(codes.SUPPLY_HIGH, sense.supply_mv)
         if not powered:
             self._low_since_ms = now_ms
             return 0
-        return self._powered(now_ms, sense)
+        return self._powered(now_ms)
 
-    def _powered(self, now_ms: int, sense) -> int:
+    def _powered(self, now_ms: int) -> int:
         """Return the code of what may only be wrong while the supply is on, or 0."""
-        if sense.current_ma > self._supply.current_max_ma:
+        sense = self._sense
+        if sense.current_ma > self._current_max_ma:
             return self.fault(codes.OVER_CURRENT, sense.current_ma)
-        if sense.supply_mv >= self._supply.low_mv:
+        if sense.supply_mv >= self._low_mv:
             self._low_since_ms = now_ms
         elif now_ms - self._low_since_ms > SETTLE_MS:
             return self.fault(codes.SUPPLY_LOW, sense.supply_mv)
-        return self._heat(sense.hottest, sense.fullest) if sense.hottest >= 0 else 0
-
-    def _heat(self, hottest: int, fullest: int) -> int:
-        sense = self._sense
-        if sense.temperature_millidegc[hottest] > self._coil.trip_decidegc * 100:
+        hottest, fullest = sense.hottest, sense.fullest
+        if hottest < 0:
+            return 0
+        if sense.temperature_millidegc[hottest] > self._trip_millidegc:
             return self.fault(codes.OVER_TEMPERATURE, sense.temperature_millidegc[hottest] // 100, hottest)
-        if sense.heat_uj[fullest] > self._coil.heat_budget_mj * 1000:
+        if sense.heat_uj[fullest] > self._budget_uj:
             return self.fault(codes.HEAT_BUDGET, sense.heat_uj[fullest] // 1000, fullest)
         return 0
 

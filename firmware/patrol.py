@@ -41,7 +41,8 @@ class Patrol:
         if not self._channels.on_mask:
             self._doubts = 0
             return 0
-        self._doubt()
+        if self._sense.current_fresh:
+            self._doubt(self._sense.current_ma)
         if self._since < DOUBT_AFTER:
             return 0
         doubted = self._doubts >= DOUBTS_MAX
@@ -56,20 +57,20 @@ class Patrol:
 
     def expected_ma(self) -> int:
         """Return the mean current that the orders explain, with resistances as measured last."""
+        duty_permille, mohm = self._channels.duty_permille, self._resistance.mohm
+        supply_mv, wiring_mohm = self._sense.supply_mv, self._wiring_mohm
         total, mask, channel = 0, self._channels.on_mask, 0
         while mask:
             if mask & 1:
-                mohm = self._resistance.mohm[channel] + self._wiring_mohm
-                total += self._channels.duty_permille[channel] * self._sense.supply_mv // mohm
+                total += duty_permille[channel] * supply_mv // (mohm[channel] + wiring_mohm)
             mask >>= 1
             channel += 1
         return total
 
-    def _doubt(self) -> None:
-        if self._sense.current_fresh:
-            expected = self.expected_ma()
-            unexplained = self._sense.current_ma > expected + expected // TOLERANCE + STRAY_MA
-            self._doubts = self._doubts + 1 if unexplained else 0
+    def _doubt(self, current_ma: int) -> None:
+        expected_ma = self.expected_ma()
+        unexplained = current_ma > expected_ma + expected_ma // TOLERANCE + STRAY_MA
+        self._doubts = self._doubts + 1 if unexplained else 0
 
     def _next(self) -> int:
         """Return the next coil that is on, or NONE when the round is done."""

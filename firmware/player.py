@@ -36,8 +36,9 @@ class Player:
         self._sources = array("B", [0] * (WAIT + 1))  # of the conditions that are looked at on each step
         self._quantifiers = array("B", [0] * (WAIT + 1))
         self._compares = array("B", [0] * (WAIT + 1))
-        self._values = array("h", [0] * (WAIT + 1))
+        self._values = array("i", [0] * (WAIT + 1))  # in the unit of the readings
         self._masks = array("i", [0] * (WAIT + 1))
+        self._readings = [None] * (WAIT + 1)  # the coils' readings that it is about
         self._chosen = array("B", [0] * program.AIMS_MAX)
         self._acts = (
             self._halt, self._fire, self._fire, self._delay, self._repeat,
@@ -178,46 +179,55 @@ class Player:
 
     def _keep(self, place: int, at: int) -> None:
         """Keep the condition that stands at `at`, taken apart once for all the steps that look at it."""
-        code = self.code
+        code, source = self.code, self.code[at]
         value = program.number(code, at + 2, 2)
-        self._sources[place] = code[at]
+        value = value - 0x10000 if value & 0x8000 else value
+        self._sources[place] = source
         self._quantifiers[place] = code[at + 1] & 15
         self._compares[place] = code[at + 1] >> 4
-        self._values[place] = value - 0x10000 if value & 0x8000 else value
-        self._masks[place] = program.number(code, at + 4, 4) if code[at] in program.OF_COILS else 0
+        self._masks[place] = program.number(code, at + 4, 4) if source in program.OF_COILS else 0
+        self._values[place] = value
+        self._readings[place] = None
+        if source == program.TEMPERATURE:
+            self._keep_readings(place, self._sense.temperature_millidegc, 100)
+        elif source == program.HEAT:
+            self._keep_readings(place, self._sense.heat_uj, 1000)
+
+    def _keep_readings(self, place: int, readings: array, unit: int) -> None:
+        """Have a condition look at these; what is a fraction of a unit above its value does not count."""
+        fraction = unit - 1 if self._compares[place] == program.ABOVE else 0
+        self._readings[place] = readings
+        self._values[place] = self._values[place] * unit + fraction
 
     def _holds(self, place: int) -> bool:
         """Evaluate the condition that is kept there."""
-        source = self._sources[place]
-        if source in program.OF_ATTITUDE and not self._attitude.known:
-            self._blind = True
-            return False
-        compare, mask = self._compares[place], self._masks[place]
-        if self._quantifiers[place] == program.CHOSEN:
+        readings, value = self._readings[place], self._values[place]
+        above = self._compares[place] == program.ABOVE
+        mask, quantifier = self._masks[place], self._quantifiers[place]
+        if quantifier == program.CHOSEN:
             mask = 1 << self._chosen[mask]
-        if source == program.DOWN:
-            return mask >> self._attitude.down_channel() & 1 == compare
-        if source in program.OF_COILS:
-            return self._any_or_all(place, mask)
-        reading, value = self._reading(source), self._values[place]
-        return reading > value if compare == program.ABOVE else reading < value
-
-    def _any_or_all(self, place: int, mask: int) -> bool:
-        hot = self._sources[place] == program.TEMPERATURE
-        readings = self._sense.temperature_millidegc if hot else self._sense.heat_uj
-        unit = 100 if hot else 1000
-        value, above = self._values[place], self._compares[place] == program.ABOVE
-        want_all = self._quantifiers[place] == program.ALL
+        if readings is None:
+            return self._holds_for_robot(self._sources[place], mask, value, above)
+        want_all = quantifier == program.ALL
         channel = 0
         while mask:
             if mask & 1:
-                reading = readings[channel] // unit
+                reading = readings[channel]
                 holds = reading > value if above else reading < value
                 if holds != want_all:
                     return holds
             mask >>= 1
             channel += 1
         return want_all
+
+    def _holds_for_robot(self, source: int, mask: int, value: int, above: bool) -> bool:
+        if source in program.OF_ATTITUDE and not self._attitude.known:
+            self._blind = True
+            return False
+        if source == program.DOWN:
+            return mask >> self._attitude.down_channel() & 1 == above  # IS is coded as ABOVE
+        reading = self._reading(source)
+        return reading > value if above else reading < value
 
     def _reading(self, source: int) -> int:
         if source == program.CURRENT:

@@ -13,6 +13,7 @@ class Reports:
     def __init__(self, core) -> None:
         self.period_ms = 0  # of telemetry, 0: none
         self._core = core
+        self._player, self._channels, self._attitude = core.player, core.channels, core.attitude
         self._due_ms = 0
         self._step = 0
         self._records = bytearray(4 * core.channels.count)
@@ -30,19 +31,18 @@ class Reports:
 
     def tell(self) -> None:
         """Send what the control step left to tell: a step, coils cut off, a lost sensor, telemetry that is due."""
-        core = self._core
-        if core.player.step != self._step:
-            self._step = core.player.step
+        if self._player.step != self._step:
+            self._step = self._player.step
             if self._step:
                 self.event(messages.STEP)
-        if core.channels.cut_off_mask:
-            self._cut_offs(core)
-        if core.attitude.lost:
-            core.attitude.lost = False
+        if self._channels.cut_off_mask:
+            self._cut_offs(self._core)
+        if self._attitude.lost:
+            self._attitude.lost = False
             self.event(messages.LOST, codes.ATTITUDE)
-        if self.period_ms and core.now_ms - self._due_ms >= 0:
-            self._due_ms = core.now_ms + self.period_ms
-            core.link.post(messages.TELEMETRY.number, self._telemetry(core))
+        if self.period_ms and self._core.now_ms - self._due_ms >= 0:
+            self._due_ms = self._core.now_ms + self.period_ms
+            self._core.link.post(messages.TELEMETRY.number, self._telemetry(self._core))
 
     def coils(self) -> bytes:
         """Return what the resistances say, as `coils` carries it."""

@@ -129,12 +129,18 @@ class Sense:
         loss_uw = (t // 100 - self._ambient_decidegc) * coil.loss_uw_per_k // 10
         energy_nj = (power_uw - loss_uw) * passed_ms + self._rest_nj[channel]
         capacity = coil.heat_capacity_uj_per_k
-        if t >= self._change_millidegc:
+        if self._change_millidegc <= t <= self._austenite_millidegc:
             capacity += self._latent(channel, t, energy_nj)
         moved = energy_nj // capacity
         self._rest_nj[channel] = energy_nj - moved * capacity
-        self.temperature_millidegc[channel] = t + moved
-        self._transform(channel, t + moved)
+        t += moved
+        self.temperature_millidegc[channel] = t
+        if t <= coil.mf_millidegc:
+            self._martensite_permille[channel] = 1000
+        elif t >= self._austenite_millidegc:
+            self._martensite_permille[channel] = 0
+        else:
+            self._transform(channel, t)
 
     def _latent(self, channel: int, t: int, energy_nj: int) -> int:
         """Return the apparent heat capacity of the phase change where one is going on.
@@ -145,31 +151,22 @@ class Sense:
         """
         coil = self._coil
         martensite = self._martensite_permille[channel]
-        if energy_nj > 0 and coil.as_millidegc <= t < coil.af_millidegc and martensite >= self._most_permille(t):
-            return self._latent_heating
+        if energy_nj > 0 and coil.as_millidegc <= t < coil.af_millidegc:
+            on_line = 1000 * (coil.af_millidegc - t) // (coil.af_millidegc - coil.as_millidegc)
+            return self._latent_heating if martensite >= on_line else 0
         if energy_nj < 0 and coil.mf_millidegc < t <= coil.ms_millidegc and martensite < 1000:
             return self._latent_cooling
         return 0
 
-    def _most_permille(self, t: int) -> int:
-        """Return the martensite fraction of the heating line at that temperature."""
-        return 1000 * (self._coil.af_millidegc - t) // (self._coil.af_millidegc - self._coil.as_millidegc)
-
     def _transform(self, channel: int, t: int) -> None:
-        """Hold the martensite fraction between its heating and cooling lines."""
+        """Hold the martensite fraction between its heating and cooling lines, where they are."""
         coil = self._coil
-        if t <= coil.mf_millidegc:
-            martensite = 1000
-        elif t >= self._austenite_millidegc:
-            martensite = 0
-        else:
-            most = self._most_permille(t)
-            least = 1000 * (coil.ms_millidegc - t) // (coil.ms_millidegc - coil.mf_millidegc)
-            martensite = self._martensite_permille[channel]
-            martensite = most if martensite > most else martensite
-            martensite = least if martensite < least else martensite
-            martensite = 0 if martensite < 0 else martensite
-        self._martensite_permille[channel] = martensite
+        most = 1000 * (coil.af_millidegc - t) // (coil.af_millidegc - coil.as_millidegc)
+        least = 1000 * (coil.ms_millidegc - t) // (coil.ms_millidegc - coil.mf_millidegc)
+        martensite = self._martensite_permille[channel]
+        martensite = most if martensite > most else martensite
+        martensite = least if martensite < least else martensite
+        self._martensite_permille[channel] = 0 if martensite < 0 else martensite
 
 
 def _latent_uj_per_k(coil, begin_millidegc: int, end_millidegc: int) -> int:

@@ -27,7 +27,7 @@ class Slot:
         self._sense = sense
         self._wiring_mohm = wiring_mohm
         self._most_mohm = most_mohm
-        self._begun = False
+        self.begun = False  # until `end`
         self._on = _UNTOUCHED  # the coil that was put on alone, or NONE
 
     def measure(self, channel: int) -> int:
@@ -35,7 +35,7 @@ class Slot:
 
         It is nothing if so much has flowed that the alert has opened the outputs: the monitor may then see no current.
         """
-        if self._begun or not self._channels.is_alone_on(channel):
+        if self.begun or not self._channels.is_alone_on(channel):
             self._set(channel)
         self._convert()
         mohm = self._monitor.seen_mohm() - self._wiring_mohm
@@ -53,22 +53,22 @@ class Slot:
 
     def end(self) -> None:
         """Bring back outputs and averages, if a slot has been begun."""
-        if self._begun:
+        if self.begun:
             self._channels.write()
             self._monitor.average()
-            self._begun = False
+            self.begun = False
             self._on = _UNTOUCHED
             self._sense.disturbed()
 
     def _set(self, channel: int) -> None:
         if channel != self._on:
-            self._begun = True
+            self.begun = True
             self._channels.alone(channel)
             self._on = channel
             self._board.wait_us(PWM_US)
 
     def _convert(self) -> None:
-        self._begun = True
+        self.begun = True
         self._monitor.hasten()
         self._board.wait_us(CONVERSIONS_US)
         self._monitor.look()
