@@ -54,17 +54,16 @@ class Message:
         self.fields = fields
         self._open = bool(fields) and fields[-1].letter == "s"
         sized = fields[:-1] if self._open else fields
-        self._names = [field.name for field in sized]
         self._format = "<" + "".join([field.letter for field in sized])
         self._size = struct.calcsize(self._format)
-        self._tuple = namedtuple(name, tuple([field.name for field in fields]))
+        self._tuple = None  # made when it is first needed: a board receives only half of the messages
 
     def pack(self, **values) -> bytes:
         """Return the payload; ValueError names a field that is missing, unknown or outside its range."""
         if len(values) != len(self.fields):
             raise ValueError(f"{self.name} takes {', '.join([field.name for field in self.fields])}")
         try:
-            numbers = tuple([values[name] for name in self._names])
+            numbers = tuple([values[self.fields[i].name] for i in range(len(self._format) - 1)])
             rest = bytes(values[self.fields[-1].name]) if self._open else b""
         except KeyError as missing:
             raise ValueError(f"{self.name} needs {missing.args[0]}") from None
@@ -81,6 +80,8 @@ class Message:
         if len(payload) < self._size or (len(payload) > self._size and not self._open):
             raise ValueError(f"{self.name}: {len(payload)} bytes, expected {self._size}")
         numbers = struct.unpack(self._format, payload[: self._size])
+        if self._tuple is None:
+            self._tuple = namedtuple(self.name, tuple([field.name for field in self.fields]))
         return self._tuple(*numbers, payload[self._size :]) if self._open else self._tuple(*numbers)
 
     def line(self) -> str:
