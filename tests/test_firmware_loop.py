@@ -6,7 +6,9 @@ from firmware import heap
 from firmware.tasks import CONTROL, RECEIVE, SEND, Tasks
 from hil_sim.address import parse
 from hil_sim.assembly import assemble
+from host.errors import SoftrigError
 from tests.firmware_bench import Rig
+from tests.hil_rig import HilRig
 from tests.sabotage import sabotage
 
 
@@ -64,6 +66,21 @@ def test_a_loop_that_goes_round_without_a_task_is_restarted(monkeypatch, file, t
 
     assert bench.crashes == []
     assert bench.world.resets > 0
+
+
+def test_an_error_opens_the_supply_and_does_not_wait_for_the_monostable(monkeypatch):
+    sabotage(monkeypatch, "core.py", "self.reports.tell()", "1 // (not self.channels.on_mask)")
+    rig = HilRig("sim:circular?body=still")
+    rig.robot.arm()
+
+    with pytest.raises(SoftrigError):
+        rig.robot.fire(["A"], 500, 1000)
+
+    (_, _), (on_us, _), (off_us, duty) = rig.bench.coil("A").history[-3:]
+    assert duty == 0.0
+    assert off_us - on_us < 5_000
+    assert "ZeroDivisionError" in rig.bench.crashes[0].error
+    rig.link.close()
 
 
 def test_a_loop_that_does_all_is_never_restarted():

@@ -152,6 +152,23 @@ def test_one_transfer_that_fails_in_a_slot_leaves_orders_and_averages_as_they_we
     assert board.chip.duty_permille[0] == 300
 
 
+@pytest.mark.parametrize("figure", ["seen_mohm", "seen_ma"])
+def test_one_wrong_measurement_trips_nothing(rig, figure):
+    rig.fire(0b1, duty_permille=300, hold_ms=9000)
+    supply = rig.board.supply
+    right = getattr(supply, figure)
+
+    def wrong():
+        setattr(supply, figure, right)
+        return 0x3FFFFFFF
+
+    setattr(supply, figure, wrong)
+    rig.run(3 * SLOT_MS)
+
+    assert getattr(supply, figure) == right  # it was asked
+    assert rig.core.state == messages.ARMED
+
+
 def test_current_is_not_read_before_the_averages_are_whole_again(rig):
     rig.fire(0b1, duty_permille=300, hold_ms=9000)
     read = []

@@ -199,6 +199,34 @@ def test_a_power_cut_at_any_write_to_the_record_ends_in_a_program_that_lives(wha
     assert fields(bench)[:2] == (0 if what in BAD else 1, CONFIRMED)
 
 
+@pytest.mark.parametrize("operation", range(1, 9))
+def test_a_power_cut_loses_no_record_but_the_one_that_was_being_written(operation):
+    bench = slot_bench({"a": small("a"), "b": {}}, record(1, tries=3, fallback=0))
+    bench.board.flash.cut_at = operation
+    copies = ("boot.0", "boot.1")
+    sequences = []
+
+    for _ in range(400):
+        bench.run(0.1)
+        there = [bench.board.flash.read(path) for path in copies if path in bench.board.flash.paths()]
+        sequences.append(BootRecord.newest(there).sequence)
+    bench.close()
+
+    assert sequences == sorted(sequences)
+
+
+def test_a_hung_program_is_restarted_within_the_short_period_once_it_has_confirmed_itself():
+    bench = slot_bench({"a": small("a"), "b": REAL}, record(1, tries=3, fallback=0))
+    bench.run(6)
+    assert fields(bench) == (1, CONFIRMED, 0, 0)
+
+    bench.world.hang()
+    bench.run(0.3)
+
+    assert bench.world.resets == 1
+    bench.close()
+
+
 @WORLDS
 def test_boot_tells_the_program_of_a_chip_that_answers_but_is_not_off(execute):
     bench = slot_bench({"a": program("print(loud)\n    while True: time.sleep_ms(5)")}, execute=execute)
