@@ -246,6 +246,12 @@ while True: time.sleep_ms(5)
     assert said(bench) == ["1", "3"]
 
 
+def test_whoever_feeds_the_watchdog_loads_the_time_that_was_set_last(tmp_path):
+    main = "short = WDT(timeout=50)\nWDT(timeout=1000)\nwhile True:\n  short.feed()\n  time.sleep_ms(200)"
+
+    assert run(tmp_path, main, ms=900).world.resets == 0
+
+
 def test_a_hung_processor_is_reset_by_its_watchdog(tmp_path):
     bench = bench_of(tmp_path, "dog = WDT(timeout=50)\nwhile True:\n  time.sleep_ms(5)\n  dog.feed()")
     bench.run(0.2)

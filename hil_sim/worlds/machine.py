@@ -21,7 +21,7 @@ def machine_module(processor: Processor) -> ModuleType:
     """Return `machine` for one life of a processor."""
     module = ModuleType("machine")
     for peripheral in (Pin, I2C, SPI, PWM, ADC, UART, WDT):
-        owned = {"_processor": processor, "_pins": {}, "_duties": {}, "_timed": set()}
+        owned = {"_processor": processor, "_pins": {}, "_duties": {}, "_timed": set(), "_timeout_us": 0}
         setattr(module, peripheral.__name__, type(peripheral.__name__, (peripheral,), owned))
     vars(module).update(
         PWRON_RESET=PWRON_RESET,
@@ -69,14 +69,18 @@ def time_module(processor: Processor) -> ModuleType:
 
 
 class WDT:
-    """The watchdog; nothing stops it but a reset."""
+    """The watchdog; nothing stops it but a reset. There is one: whoever feeds it loads the time-out that was set last.
+
+    That is how the port has it: the pico-sdk keeps one `load_value` (hardware_watchdog/watchdog.c).
+    """
 
     _processor: ClassVar[Processor]
+    _timeout_us: ClassVar[int]
 
     def __init__(self, id: int = 0, timeout: int = 5000) -> None:
         if timeout > WATCHDOG_MAX_MS:
             raise ValueError(f"timeout exceeds {WATCHDOG_MAX_MS}")
-        self._timeout_us = timeout * 1000
+        type(self)._timeout_us = timeout * 1000
         self.feed()
 
     def feed(self) -> None:
