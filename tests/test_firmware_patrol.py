@@ -152,6 +152,21 @@ def test_one_transfer_that_fails_in_a_slot_leaves_orders_and_averages_as_they_we
     assert board.chip.duty_permille[0] == 300
 
 
+def press(board):
+    """Open the emergency-stop loop: no output drives a coil any more."""
+    board.closed = False
+    board.coil_mohm = [OPEN] * 16
+
+
+def test_an_emergency_stop_in_the_middle_of_a_slot_is_told_as_that_and_not_as_an_open_coil(rig):
+    rig.fire(0b1, duty_permille=300, hold_ms=9000)
+
+    rig.board.wait_us = lambda time_us: press(rig.board)
+    rig.run(2 * SLOT_MS)
+
+    assert rig.core.code == codes.ESTOP
+
+
 @pytest.mark.parametrize("figure", ["seen_mohm", "seen_ma"])
 def test_one_wrong_measurement_trips_nothing(rig, figure):
     rig.fire(0b1, duty_permille=300, hold_ms=9000)
