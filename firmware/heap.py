@@ -12,12 +12,15 @@ ENOUGH_MS = 2
 
 
 class Heap:
-    """Takes the collecting over from the interpreter."""
+    """Takes the collecting over from the interpreter, which is left the one before an allocation that would fail.
+
+    A burst of orders can leave more behind between two collections than a small heap has.
+    """
 
     def __init__(self) -> None:
         self._steps = 0
         gc.collect()
-        gc.disable()
+        gc.threshold(-1)
 
     def collect(self, left_ms: int) -> bool:
         """Collect if it is due and the step has that much time left, or if it cannot wait; return whether it did."""

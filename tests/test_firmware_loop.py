@@ -19,7 +19,7 @@ def collected(monkeypatch):
 
     class Collector:
         collect = staticmethod(lambda: done.append("collect"))
-        disable = staticmethod(lambda: done.append("disable"))
+        threshold = staticmethod(lambda size: done.append(f"threshold {size}"))
 
     monkeypatch.setattr(heap, "gc", Collector)
     return done
@@ -92,10 +92,10 @@ def test_a_loop_that_does_all_is_never_restarted():
     assert bench.world.resets == 0
 
 
-def test_the_interpreter_does_not_collect_by_itself(collected):
+def test_the_interpreter_collects_by_itself_only_before_an_allocation_that_would_fail(collected):
     heap.Heap()
 
-    assert collected == ["collect", "disable"]
+    assert collected == ["collect", "threshold -1"]
 
 
 def test_garbage_is_collected_where_a_step_has_time_left(collected):

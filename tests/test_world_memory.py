@@ -18,6 +18,8 @@ from host.gait.compiler import compile_script
 from host.gait.script import loads
 from host.robot import Robot
 from host.run import Keeper, run
+from protocol import messages
+from tests.hil_rig import HilRig
 
 LOCK = b"""
 
@@ -97,6 +99,17 @@ def test_no_control_step_allocates_when_a_chip_or_coil_fails(fault):
     list(robot.listen(2500))
 
     assert bench.crashes == []
+
+
+@pytest.mark.parametrize("request_of", [messages.COILS_REQUEST, messages.SETTINGS_REQUEST, messages.STATUS_REQUEST])
+def test_a_burst_of_questions_leaves_memory_for_their_answers(request_of):
+    rig = HilRig("sim:circular?body=still&world=micropython")
+    for _ in range(4):
+        asked = [rig.robot._ask(request_of) for _ in range(40)]
+        assert all(rig.robot._answer(seq) for seq in asked)
+
+    assert rig.bench.crashes == []
+    rig.link.close()
 
 
 def test_the_lock_finds_a_step_that_allocates():
