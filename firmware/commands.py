@@ -190,8 +190,12 @@ class Commands:
         return True
 
     def _cancel(self, order, seq: int) -> None:
+        """End the program, or do not start the one that is being verified."""
         if self._core.state == messages.RUNNING:
             self._core.end_program(messages.ABORTED)
+        elif self.upload.request >= 0:
+            self._refuse(self.upload.request, Refused(codes.CANCELLED))
+            self.upload.request = -1
 
     def _armed(self) -> None:
         self._not_tripped()

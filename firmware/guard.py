@@ -4,11 +4,10 @@ Checked on every control step, none of them can be turned off over the wire. Ind
 order's own end (channels), the lease (core) and the hardware behind the heartbeat (board).
 """
 
-from firmware.sense import BOARD_MAX_DECIDEGC, BOARD_MIN_DECIDEGC
+from firmware.sense import BOARD_MAX_DECIDEGC, BOARD_MIN_DECIDEGC, STRAY_MA
 from protocol import codes
 
 SETTLE_MS = 100  # readings are averages: a condition must last this long before it is believed
-STRAY_MA = 25
 
 
 class Guard:

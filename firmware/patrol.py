@@ -7,13 +7,13 @@ of the averages can trip the robot.
 """
 
 from firmware.channels import NONE, bits
+from firmware.sense import STRAY_MA
 from firmware.slot import PULSE_US, WRITE_US
 from protocol import codes
 
 SLOT_EVERY = 64  # control steps
 DOUBT_AFTER = 16  # control steps between two slots, if there is a doubt
 DOUBTS_MAX = 5  # readings of the mean current, one every 10 ms, that nothing explains
-STRAY_MA = 25
 TOLERANCE = 8  # an eighth: 0.5 % aliasing, 8 % of phase since the coil was measured, 2 % of stretch
 
 

@@ -13,6 +13,7 @@ from protocol import codes
 
 OPEN_PERMILLE = 1600  # of the profile's resistance. Phase and stretch make 0.7 to 1.3; two coils in parallel 0.5
 SHORT_PERMILLE = 600
+COLD_SHORT_PERMILLE = 800  # of a coil that is cold, so all martensite: less is a coil some of whose turns touch
 MOST_MOHM = 999_999  # stands for all above, and for no current at all
 MOST_TOLD_MOHM = 655_350
 SHARE_PERMILLE = 350  # stretch is 2 % of the resistance, the whole change of phase 8 %; the rest is the cosine's
@@ -28,6 +29,7 @@ class Resistance:
         self.mohm = array("i", [coil.resistance_mohm] * count)
         self.open_mohm = coil.resistance_mohm * OPEN_PERMILLE // 1000
         self.short_mohm = coil.resistance_mohm * SHORT_PERMILLE // 1000
+        self._cold_short_mohm = coil.resistance_mohm * COLD_SHORT_PERMILLE // 1000
         self._cold_mohm = array("i", [0] * count)  # 0: not known
         self._measured = array("B", [0] * count)
         self._coil = coil
@@ -45,15 +47,23 @@ class Resistance:
         """Take that as the coil's resistance when it is cold, all martensite."""
         self._cold_mohm[channel] = mohm
 
-    def verdict(self, mohm: int) -> int:
+    def hot_mohm(self, channel: int) -> int:
+        """Return the least resistance to reckon with: that of the coil when it is all austenite."""
+        cold_mohm = self._cold_mohm[channel]
+        hot_mohm = (cold_mohm or self.mohm[channel]) * self._coil.austenite_permille // 1000
+        return min(hot_mohm, self.mohm[channel])
+
+    def verdict(self, mohm: int, is_cold: bool = False) -> int:
         """Return the code of what is wrong with a coil of that resistance, or 0."""
         if mohm > self.open_mohm:
             return codes.COIL_OPEN
-        return codes.COIL_SHORT if mohm < self.short_mohm else 0
+        return codes.COIL_SHORT if mohm < self.limit_mohm(codes.COIL_SHORT, is_cold) else 0
 
-    def limit_mohm(self, code: int) -> int:
+    def limit_mohm(self, code: int, is_cold: bool = False) -> int:
         """Return the end of the band that a verdict is about."""
-        return self.open_mohm if code == codes.COIL_OPEN else self.short_mohm
+        if code == codes.COIL_OPEN:
+            return self.open_mohm
+        return self._cold_short_mohm if is_cold else self.short_mohm
 
     def martensite_permille(self, channel: int) -> int:
         """Return the share of martensite by the last measurement, or UNKNOWN."""

@@ -5,13 +5,13 @@ output that is on (else its switch is welded); with the supply on and every outp
 stuck); then each coil's resistance must be in its band. The first that is not ends the test with everything off.
 """
 
+from firmware.sense import STRAY_MA
 from firmware.slot import PULSE_US
 from protocol import codes
 
 SWITCH_STEPS = 2  # ASSUMED: the supply's switch, or relay, has followed after 10 ms
 WELDED_AT = SWITCH_STEPS
 STRAY_AT = 2 * SWITCH_STEPS + 1
-STRAY_MA = 25
 
 
 class SelfTest:
@@ -90,15 +90,17 @@ class SelfTest:
             self._finish()
 
     def _judge(self, channel: int, mohm: int, supply_mv: int) -> None:
-        code = self._resistance.verdict(mohm)
+        is_cold = self._sense.temperature_millidegc[channel] < self._cold_millidegc
+        code = self._resistance.verdict(mohm, is_cold)
         if supply_mv < self._low_mv // 2:
             self._fail(codes.SUPPLY_LOW, 255, supply_mv, self._low_mv)
         elif code:
-            self._fail(code, channel, mohm, self._resistance.limit_mohm(code))
+            self._fail(code, channel, mohm, self._resistance.limit_mohm(code, is_cold))
         else:
             self._resistance.take(channel, mohm)
-            if self._sense.temperature_millidegc[channel] < self._cold_millidegc:
+            if is_cold:
                 self._resistance.refer(channel, mohm)
+            self._sense.weigh(channel, self._resistance.hot_mohm(channel))
 
     def _fail(self, code: int, channel: int, value: int, limit: int) -> None:
         self.code, self.channel, self.value, self.limit = code, channel, value, limit

@@ -9,7 +9,10 @@ from array import array
 
 BOARD_MIN_DECIDEGC = -200  # what a thermistor in order reads on a board in use
 BOARD_MAX_DECIDEGC = 850
+STRAY_MA = 25  # what the monitor may read when nothing is on
 AMBIENT_LEAST_DECIDEGC = 200  # the estimates reckon with no colder air: a thermistor may have drifted
+NOMINAL_PERMILLE = 1000
+NEAR_PERMILLE = 970  # a resistance so near to the profile's, or above it, counts as the profile's
 STALE_STEPS = 4  # after a sense slot: then the second conversion, of 9.8 ms, has ended
 
 
@@ -26,6 +29,7 @@ class Sense:
         self.heat_uj = array("i", [0] * count)  # taken and not yet leaked away
         self.hottest = -1  # among the coils that are on, the one with the highest estimate; -1: none is on
         self.fullest = -1  # and the one nearest to its heat budget
+        self._weight_permille = array("H", [NOMINAL_PERMILLE] * count)  # power, of what the profile's coil would take
         self._martensite_permille = array("i", [1000] * count)
         self._rest_nj = array("i", [0] * count)
         self._seen_ms = array("i", [0] * count)
@@ -33,6 +37,7 @@ class Sense:
         self._board = board
         self._monitor = monitor
         self._coil = coil = profile.coil
+        self._nominal_mv = profile.supply.nominal_mv
         self._latent_heating = _latent_uj_per_k(coil, coil.as_millidegc, coil.af_millidegc)
         self._latent_cooling = _latent_uj_per_k(coil, coil.mf_millidegc, coil.ms_millidegc)
         self._change_millidegc = min(coil.as_millidegc, coil.mf_millidegc)  # below it no phase changes
@@ -63,9 +68,17 @@ class Sense:
 
     def pulse(self, channel: int, more_permille: int, time_us: int) -> None:
         """Add the energy of a pulse at so much more than the duty that was ordered."""
-        energy_uj = self._full_uw // 1000 * time_us // 1000 * more_permille // 1000
+        energy_uj = self._weighed(channel, self._full_uw) // 1000 * time_us // 1000 * more_permille // 1000
         self.heat_uj[channel] += energy_uj
         self._rest_nj[channel] += energy_uj * 1000
+
+    def weigh(self, channel: int, mohm: int) -> None:
+        """Reckon with more power in a coil that was found to have less resistance than the profile says."""
+        nominal_mohm, wiring_mohm = self._coil.resistance_mohm, self._coil.wiring_mohm
+        self._weight_permille[channel] = NOMINAL_PERMILLE
+        if mohm < nominal_mohm // 1000 * NEAR_PERMILLE:
+            nominal_uw = full_power_uw(self._nominal_mv, nominal_mohm, wiring_mohm)
+            self._weight_permille[channel] = full_power_uw(self._nominal_mv, mohm, wiring_mohm) // (nominal_uw // 1000)
 
     def assume_hot(self) -> None:
         """Take every coil as just below its trip, its budget spent: what a reset forgot may be so."""
@@ -95,7 +108,7 @@ class Sense:
             if on_mask & 1:
                 if self._seen_ms[channel] != updated_ms:
                     self._heat(channel, updated_ms, 0)  # it was off until then
-                self._heat(channel, now_ms, tenth_uw * duty_permille[channel] // 100)
+                self._heat(channel, now_ms, self._weighed(channel, tenth_uw * duty_permille[channel] // 100))
                 if hottest < 0 or self.temperature_millidegc[channel] > self.temperature_millidegc[hottest]:
                     hottest = channel
                 if fullest < 0 or self.heat_uj[channel] > self.heat_uj[fullest]:
@@ -106,10 +119,15 @@ class Sense:
         self.fullest = fullest
         self._updated_ms = now_ms
 
+    def _weighed(self, channel: int, power_uw: int) -> int:
+        weight = self._weight_permille[channel]
+        return power_uw if weight == NOMINAL_PERMILLE else power_uw // 1000 * weight
+
     def _read_board(self) -> None:
-        self.board_decidegc = self._board.board_decidegc() + self.board_offset_decidegc
+        read_decidegc = self._board.board_decidegc()
+        self.board_decidegc = read_decidegc + self.board_offset_decidegc
         if BOARD_MIN_DECIDEGC <= self.board_decidegc <= BOARD_MAX_DECIDEGC:
-            self._ambient_decidegc = max(self.board_decidegc, AMBIENT_LEAST_DECIDEGC)
+            self._ambient_decidegc = max(read_decidegc, self.board_decidegc, AMBIENT_LEAST_DECIDEGC)
 
     def _read_supply(self) -> None:
         self.supply_mv = self._monitor.voltage_mv()

@@ -160,6 +160,12 @@ CODES = (
         "Let it cool; after a reset the robot takes every coil as hot until it must have cooled.",
     ),
     Code(
+        codes.CANCELLED, "R25", "",
+        "The program was cancelled before it was verified.",
+        NOTHING,
+        "Start it again if it is wanted.",
+    ),
+    Code(
         codes.STOP, "F01", "",
         "A stop was received.",
         ALL_OFF,

@@ -170,7 +170,7 @@ class Table:
     def __init__(self) -> None:
         self.chip = Chip()
         self.supply = Monitor(self)
-        self.coil_mohm = [10_000] * 16  # with its wires; 0: open
+        self.coil_mohm = [10_850] * 16  # cold, with its wires, 9500 mohm when it is hot; 0: open
         self.stuck_mask = 0  # coils whose MOSFET conducts whatever its gate says
         self.welded = False
         self.alerting = False

@@ -45,7 +45,7 @@ class Ledger:
         self._may_outlive = self._doubtful = False
         self._stop = frames.StopFinder()
         self._host, self._robot = Link(self._seed), Link(self._seed)
-        self._open: dict[int, tuple[messages.Message, Claim | None, object]] = {}
+        self._open: dict[int, tuple[messages.Message, Claim | None, object, int]] = {}  # and how many claims there were
 
     def heard(self, data: bytes, now_us: int) -> None:
         """Take bytes that the firmware has read."""
@@ -98,7 +98,7 @@ class Ledger:
             self._cancel(now_us)
         if claim is not None:
             self._add(claim, now_us)
-        self._open[received.seq] = (message, claim, order)
+        self._open[received.seq] = (message, claim, order, len(self.claims))
 
     def _tested(self, lease_ms: int, now_us: int) -> Claim:
         lease_us = 1000 * (lease_ms or self._profile.session.lease_ms)
@@ -119,7 +119,9 @@ class Ledger:
             if claim.of_program and claim.limited:
                 claim.end(now_us)
 
-    def _answered(self, message: messages.Message, claim: Claim | None, order: object, ok: bool, now_us: int) -> None:
+    def _answered(
+        self, message: messages.Message, claim: Claim | None, order: object, count: int, ok: bool, now_us: int
+    ) -> None:
         if not ok:
             self._doubtful = self._doubtful or message in (messages.PROGRAM, messages.CODE)
             if claim is not None:
@@ -129,16 +131,17 @@ class Ledger:
         elif message is messages.ARM:
             self._lease_us = 1000.0 * (order.lease_ms or self._profile.session.lease_ms)
         elif message is messages.FIRE:
-            self._replaced(order.coils, claim, now_us)
+            self._replaced(order.coils, claim, count, now_us)
         elif message is messages.START and not self._doubtful:
             self._outlives = self._may_outlive
             claim.budget_us = dict(budgets(bytes(self._upload)))
             self._live(now_us)
 
-    def _replaced(self, coils: int, by: Claim | None, now_us: int) -> None:
-        """End what older orders say of these coils: the newest order alone holds."""
+    def _replaced(self, coils: int, by: Claim | None, count: int, now_us: int) -> None:
+        """End what older orders say of these coils, the first `count` of all: the newest order alone holds."""
+        newer = self.claims[count:]
         for claim in self._current:
-            if claim is not by and claim.mask & coils:
+            if claim is not by and claim.mask & coils and not any(claim is each for each in newer):
                 if claim.mask & ~coils:
                     rest = Claim(claim.mask & ~coils, claim.from_us, claim.until_us, claim.budget_us, claim.of_program)
                     self._add(rest, now_us)

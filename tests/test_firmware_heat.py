@@ -54,6 +54,29 @@ def test_chained_orders_cannot_keep_a_coil_on_for_ever(rig):
     assert rig.core.code == codes.ON_TOO_LONG
 
 
+def test_an_off_and_an_on_in_one_step_are_no_pause(rig):
+    """The output was never off, so its time goes on."""
+    rig.arm()
+    rig.fire(1, duty_permille=50, hold_ms=10_000)
+    rig.run(8000)
+
+    for duty_permille in (0, 50):
+        fields = {"coils": 1, "duty_permille": duty_permille, "hold_ms": 10_000}
+        rig.host.send(messages.FIRE.number, messages.FIRE.pack(**fields), rig.now_ms)
+    rig.run(4000)
+
+    assert rig.core.code == codes.ON_TOO_LONG
+
+
+def test_an_offset_of_the_board_makes_no_estimate_cooler(rig):
+    rig.board.decidegc = 450
+    rig.core.sense.board_offset_decidegc = -100
+    rig.run(400)
+
+    assert rig.core.sense.board_decidegc == 350
+    assert rig.core.sense._ambient_decidegc == 450
+
+
 def test_a_coil_is_not_charged_for_the_time_before_it_was_switched_on(rig):
     rig.arm()
     rig.run(300)

@@ -203,6 +203,20 @@ def test_a_program_that_waits_for_its_verification_dies_with_the_arming(rig):
     assert not rig.events("started")
 
 
+def test_a_program_that_is_cancelled_while_it_is_verified_does_not_start(rig):
+    code = program.fire(1, 300, 500) * 100 + program.halt()
+    rig.upload(code, program.header(code, rig.profile.crc))
+    rig.arm()
+    for message in (messages.START, messages.CANCEL):
+        rig.host.send(message.number, message.pack(), rig.now_ms)
+
+    answers = rig.run(200)
+
+    assert refusal(answers).code == codes.CANCELLED
+    assert not rig.events("started")
+    assert rig.core.state == messages.ARMED
+
+
 def test_while_a_program_runs_other_orders_are_refused_and_cancel_ends_it(rig):
     run_program(rig, program.fire(1, 300, 5000) + program.halt())
 

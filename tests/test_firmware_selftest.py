@@ -46,10 +46,10 @@ def test_each_coil_is_on_alone_and_never_longer_than_its_look(rig):
 
 BROKEN = [
     ("open", {"coil_mohm": {2: OPEN}}, (codes.COIL_OPEN, 2, 999_999, 15_200)),
-    ("shorted", {"coil_mohm": {5: SHORTED}}, (codes.COIL_SHORT, 5, 80, 5700)),
+    ("shorted", {"coil_mohm": {5: SHORTED}}, (codes.COIL_SHORT, 5, 80, 7600)),
     ("of another robot", {"coil_mohm": {0: 22_000}}, (codes.COIL_OPEN, 0, 21_502, 15_200)),
-    ("stuck MOSFET", {"stuck_mask": 8}, (codes.STRAY_CURRENT, 255, 200, 25)),
-    ("welded", {"welded": True}, (codes.CONTACTOR, 255, 200, 25)),
+    ("stuck MOSFET", {"stuck_mask": 8}, (codes.STRAY_CURRENT, 255, 184, 25)),
+    ("welded", {"welded": True}, (codes.CONTACTOR, 255, 184, 25)),
     ("no supply", {"mv": 300}, (codes.SUPPLY_LOW, 255, 300, 1500)),
 ]
 

@@ -8,7 +8,7 @@ import re
 import pytest
 
 from host.run import run
-from protocol import frames, program
+from protocol import frames, messages, program
 from tests.hil_rig import HilRig
 from tests.sabotage import sabotage
 
@@ -60,7 +60,7 @@ def played(rig: HilRig) -> None:
 
 ENDS = "if now_ms - self._end_ms[channel] >= 0:"
 LEASE_LEFT, LIVES = "def lease_left_ms(self) -> int:", " return self.lease_ms\n    def _(self):"
-LOOKS = "return self._heat(sense.hottest, sense.fullest) if sense.hottest >= 0 else 0"
+LOOKS = "hottest, fullest = sense.hottest, sense.fullest"
 ORDER_END = "self._end_ms[channel] = now_ms + hold_ms"
 LOSSES = [
     ("channels.py", ENDS, "if False:", long_order, "on for 6.* ms that no order allows"),
@@ -86,7 +86,7 @@ LOSSES = [
     ("guard.py", LOOKS, "return 0", glowing, "its heat budget is 520 mJ"),
     (
         "channels.py",
-        "elif now_ms - self._since_ms[channel] > self._coil.on_max_ms:",
+        "elif now_ms - self._since_ms[channel] > self._on_max_ms:",
         "elif False:",
         ordered_anew,
         "a pause",
@@ -118,3 +118,14 @@ def test_whole_firmware_does_the_same_deeds_without_reproach(deed):
     deed(rig)
 
     assert rig.bench.witness.broken() == []
+
+
+@pytest.mark.parametrize("duty_permille", [0, 200])
+def test_an_order_that_was_on_its_way_before_the_last_was_answered_still_allows(rig, duty_permille):
+    rig.robot.arm()
+    begun_s = rig.now_s
+    for each_permille in (300, duty_permille, 300, duty_permille, 300, duty_permille, 100):
+        rig.robot._ask(messages.FIRE, coils=1, duty_permille=each_permille, hold_ms=1000)
+    rig.run(seconds=1.5)
+
+    assert rig.coil("A").off_at_s > begun_s + 0.9
