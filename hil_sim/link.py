@@ -33,7 +33,10 @@ def open_link(address: str) -> "SimLink":
 
         bench = assemble(parse(address))
         bench.clock.run_until(BOOTED_US)
-    return SimLink(bench)
+    link = SimLink(bench)
+    if bench.crashes:
+        raise OSError(f"the firmware of the bench ended while it booted: {bench.crashes[0].error}")
+    return link
 
 
 class SimLink:

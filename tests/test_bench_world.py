@@ -155,6 +155,25 @@ def test_an_absent_chip_raises_eio_and_scan_finds_the_others(tmp_path):
     assert said(run(tmp_path, main)) == ["5", "['0x40', '0x60', '0x61', '0x70']"]
 
 
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        ("time.sleep_ms(-1)", "None"),
+        ("time.sleep_us(1.5)", "TypeError"),
+        ("time.sleep_ms(1.5)", "TypeError"),
+        ("UART(0).write('abc')", "3"),
+        ("i2c.readfrom_mem(0x60, 0x100, 1)", "b'\\x11'"),
+        ("i2c.readfrom_mem(0x60, -256, 1)", "b'\\x11'"),
+        ("i2c.readfrom_mem_into(0x60, 0x100, bytearray(1))", "None"),
+        ("i2c.writeto_mem(0x60, -256, b'\\x11')", "None"),
+    ],
+)
+def test_odd_arguments_are_taken_as_the_port_takes_them(tmp_path, call, message):
+    main = f"try: print({call})\nexcept Exception as error: print(type(error).__name__)\nprint(time.ticks_ms() < 25)"
+
+    assert said(run(tmp_path, main)) == [message, "True"]
+
+
 def test_an_empty_uart_reads_none_and_a_full_one_writes_none(tmp_path):
     main = """
 uart = UART(0, baudrate=115200, tx=Pin(0), rx=Pin(1))

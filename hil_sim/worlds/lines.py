@@ -53,11 +53,11 @@ class I2C:
 
     def writeto_mem(self, addr: int, memaddr: int, buf: bytes | Buffer, *, addrsize: int = 8) -> None:
         """Write `buf` from register `memaddr` on."""
-        self.writeto(addr, memaddr.to_bytes(addrsize // 8, "big") + bytes(buf))
+        self.writeto(addr, _pointer(memaddr, addrsize) + bytes(buf))
 
     def readfrom_mem(self, addr: int, memaddr: int, nbytes: int, *, addrsize: int = 8) -> bytes:
         """Return `nbytes` bytes from register `memaddr` on."""
-        pointer = memaddr.to_bytes(addrsize // 8, "big")
+        pointer = _pointer(memaddr, addrsize)
         chips = self._begin(addr, 2 + len(pointer) + nbytes)
         self._write(chips, addr, pointer)
         return self._read(chips, addr, nbytes)
@@ -134,11 +134,16 @@ class UART:
         buf[: len(data)] = data
         return len(data)
 
-    def write(self, buf: bytes | Buffer) -> int | None:
+    def write(self, buf: bytes | Buffer | str) -> int | None:
         """Send as much of `buf` as the transmit buffer takes and return how much, or None when it is full."""
         processor = self._processor
         processor.spend(UART_US)
-        data = bytes(buf)
+        data = buf.encode() if isinstance(buf, str) else bytes(buf)
         count = self._line.write(data, processor.clock.now_us)
         processor.board.journal.note(processor.clock.now_us, UART_SENT, 0, data[:count])
         return count if count or not data else None
+
+
+def _pointer(memaddr: int, addrsize: int) -> bytes:
+    """Return a register address as it goes over the bus: what does not fit into it is cut off, as in extmod."""
+    return (memaddr & (1 << addrsize) - 1).to_bytes(addrsize // 8, "big")

@@ -4,6 +4,7 @@ Each access costs its time (costs.py) and then happens on the bench's board. Wha
 own words, so that a driver's mistake looks the same here.
 """
 
+from operator import index
 from types import ModuleType
 from typing import ClassVar
 
@@ -48,10 +49,10 @@ def time_module(processor: Processor) -> ModuleType:
         return processor.ticks_us() // 1000 & mask
 
     def sleep_us(us: int) -> None:
-        processor.spend(max(TICKS_US, us))
+        processor.spend(max(TICKS_US, index(us)))
 
     def sleep_ms(ms: int) -> None:
-        processor.spend(max(TICKS_US, ms * 1000))
+        processor.spend(max(TICKS_US, index(ms) * 1000))
 
     module = ModuleType("time")
     vars(module).update(

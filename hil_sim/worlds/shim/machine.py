@@ -42,14 +42,14 @@ class I2C(Remote):
     def writeto_mem(self, addr, memaddr, buf, addrsize=8):
         """Write `buf` from register `memaddr` on."""
         if addrsize == 8:
-            line.ask(I2C_WRITE, self.which, addr << 8 | memaddr, buf)
+            line.ask(I2C_WRITE, self.which, addr << 8 | memaddr & 0xFF, buf)
         else:
             line.call(self.which, "writeto_mem", (addr, memaddr, buf), {"addrsize": addrsize})
 
     def readfrom_mem_into(self, addr, memaddr, buf, addrsize=8):
         """Fill `buf` from register `memaddr` on."""
         if addrsize == 8:
-            line.ask(I2C_READ, self.which, addr << 8 | memaddr, None, len(buf))
+            line.ask(I2C_READ, self.which, addr << 8 | memaddr & 0xFF, None, len(buf))
             line.take(buf)
         else:
             buf[:] = line.call(self.which, "readfrom_mem", (addr, memaddr, len(buf)), {"addrsize": addrsize})
@@ -66,6 +66,7 @@ class UART(Remote):
 
     def write(self, buf):
         """Send what the buffer takes; return how much, or None."""
+        buf = buf.encode() if isinstance(buf, str) else buf
         count = line.ask(UART_WRITE, self.which, 0, buf)
         return count if count or not buf else None
 

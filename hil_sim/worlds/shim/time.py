@@ -32,6 +32,8 @@ def ticks_diff(later, earlier):
 def sleep_us(us):
     """Let time pass."""
     us = max(us, 1)
+    if not isinstance(us, int):
+        raise TypeError("can't convert float to int")
     if us < 1 << 16:
         line.post(SLEEP, 0, us, us)
     else:
