@@ -49,7 +49,6 @@ class Channels:
         self._ramp_ms = array("H", [0] * count)
         self._begin_ms = array("i", [0] * count)
         self._since_ms = array("i", [0] * count)
-        self._ended_ms = array("i", [0] * count)
         self._rested_ms = array("i", [0] * count)
 
     def fire(self, mask: int, duty_permille: int, hold_ms: int, now_ms: int, cutoff_decidegc: int = 0,
@@ -175,17 +174,15 @@ class Channels:
             return
         if not self.on_mask >> channel & 1:
             self.on_mask |= 1 << channel
-            if now_ms - self._ended_ms[channel] > 0:  # else its output was never off
+            if not self._written[channel]:  # else its output was never off
                 self._since_ms[channel] = now_ms
         self._target[channel] = duty_permille
         self._begin_ms[channel] = now_ms
         self._drive(channel, duty_permille)
 
     def _end(self, channel: int, now_ms: int) -> None:
-        if self.on_mask >> channel & 1:
-            self._ended_ms[channel] = now_ms
-            if now_ms - self._since_ms[channel] >= self._on_max_ms:
-                self._rested_ms[channel] = now_ms + self._coil.rest_ms
+        if self.on_mask >> channel & 1 and now_ms - self._since_ms[channel] >= self._on_max_ms:
+            self._rested_ms[channel] = now_ms + self._coil.rest_ms
         self.on_mask &= ~(1 << channel)
         self._target[channel] = 0
         self._drive(channel, 0)

@@ -217,6 +217,15 @@ def test_a_program_that_is_cancelled_while_it_is_verified_does_not_start(rig):
     assert rig.core.state == messages.ARMED
 
 
+@pytest.mark.parametrize("pause_ms", [0, 1, 2])
+def test_an_off_and_an_on_of_a_program_that_one_step_serves_are_no_pause(rig, pause_ms):
+    lap = program.fire(1, 50, 9896) + program.delay(9896) + program.fire(1, 0, 0) + program.delay(pause_ms)
+    run_program(rig, lap * 2 + program.halt())
+    rig.run(12_000)
+
+    assert rig.core.code == codes.ON_TOO_LONG
+
+
 def test_while_a_program_runs_other_orders_are_refused_and_cancel_ends_it(rig):
     run_program(rig, program.fire(1, 300, 5000) + program.halt())
 
