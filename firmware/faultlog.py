@@ -13,6 +13,7 @@ from protocol import messages
 
 VERSION = 1
 FAULTS_MAX = 16
+_STARTS = 1 << 30  # numbers of starts; a board's small integers end there
 KEEP_EVERY_MS = 2000  # at most, so that a fault that comes and goes does not wear out the flash
 
 
@@ -25,10 +26,11 @@ class FaultLog:
         self._faults = []  # packed, oldest first
         kept = store.read() or b""
         self.start = 1
-        if len(kept) >= 4:
-            self.start = struct.unpack("<I", kept[:4])[0] + 1
+        if len(kept) % messages.FAULT_BYTES == 4:
+            self.start = (struct.unpack("<I", kept[:4])[0] + 1) % _STARTS
             for at in range(4, len(kept), messages.FAULT_BYTES):
                 self._faults.append(kept[at : at + messages.FAULT_BYTES])
+            self._faults = self._faults[-FAULTS_MAX:]
         self.unkept = False  # whether there is something to write down
         self._kept_ms = -KEEP_EVERY_MS
 

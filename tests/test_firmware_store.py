@@ -266,6 +266,20 @@ def test_a_start_without_faults_writes_nothing():
     assert flash.operations == 0
 
 
+@pytest.mark.parametrize(("start", "faults", "count"), [(0xFFFFFFFF, 1, 1), (1, 40, FAULTS_MAX), (1, 1.5, 0)])
+def test_a_log_that_cannot_be_is_cut_to_one_that_can(start, faults, count):
+    """A start that no number follows made the firmware die of each fault, and so of the one that told of that."""
+    flash = Flash({})
+    store_on(flash, "faults").write(struct.pack("<I", start) + bytes(int(faults * messages.FAULT_BYTES)))
+
+    log = faults_on(flash)
+    assert log.count() == count
+    log.add(5, codes.CHIP, 255, 5, messages.IDLE)
+    log.keep(5)
+
+    assert faults_on(flash).count() == min(count + 1, FAULTS_MAX)
+
+
 def test_faults_in_quick_succession_are_written_down_together():
     flash = Flash({})
     log = faults_on(flash)
