@@ -141,7 +141,7 @@ class Core:
 
     def may_restart(self) -> bool:
         """Return whether the clock should begin anew: it would outgrow small integers, and nobody is at work."""
-        return self.now_ms > UPTIME_MAX_MS and self.state == messages.IDLE and self.at_rest()
+        return self.now_ms > UPTIME_MAX_MS and self.at_rest()
 
     def lease_left_ms(self) -> int:
         """Return what is left of the lease, 0 when nobody holds it."""

@@ -166,10 +166,11 @@ def test_an_absent_chip_raises_eio_and_scan_finds_the_others(tmp_path):
         ("i2c.readfrom_mem(0x60, -256, 1)", "b'\\x11'"),
         ("i2c.readfrom_mem_into(0x60, 0x100, bytearray(1))", "None"),
         ("i2c.writeto_mem(0x60, -256, b'\\x11')", "None"),
+        ("[file := open('x', 'wb'), file.close(), file.close()][1:]", "[None, None]"),
     ],
 )
 def test_odd_arguments_are_taken_as_the_port_takes_them(tmp_path, call, message):
-    main = f"try: print({call})\nexcept Exception as error: print(type(error).__name__)\nprint(time.ticks_ms() < 25)"
+    main = f"try: print({call})\nexcept Exception as error: print(type(error).__name__)\nprint(time.ticks_ms() < 70)"
 
     assert said(run(tmp_path, main)) == [message, "True"]
 

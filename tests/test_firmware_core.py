@@ -177,3 +177,5 @@ def test_the_clock_begins_anew_only_when_nobody_is_at_work(rig):
     assert rig.core.may_restart()
     rig.core.state = messages.ARMED
     assert not rig.core.may_restart()
+    rig.core.state = messages.TRIPPED  # it is latched again after the reset
+    assert rig.core.may_restart()

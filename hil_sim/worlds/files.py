@@ -45,6 +45,7 @@ class Written:
     def __init__(self, files: Files, path: str) -> None:
         self._files = files
         self._path = path
+        self._is_open = True
         files.operate(TRUNCATE, path)
 
     def write(self, data: bytes | bytearray | memoryview) -> int:
@@ -53,8 +54,10 @@ class Written:
         return len(data)
 
     def close(self) -> None:
-        """Settle the file."""
-        self._files.operate(CLOSE, self._path)
+        """Settle the file; closing it twice does nothing."""
+        if self._is_open:
+            self._is_open = False
+            self._files.operate(CLOSE, self._path)
 
     def __enter__(self) -> "Written":
         return self

@@ -132,7 +132,7 @@ class Remote:
         return self
 
     def __exit__(self, *raised) -> None:
-        line.call(self.which, "close")
+        self.close()
 
     def __getattr__(self, name):
         def method(*args, **options):
@@ -150,6 +150,13 @@ class Held(Remote):
 
     def __init__(self, which: int) -> None:
         self.which = which
+        self._is_open = True
+
+    def close(self) -> None:
+        """Close it, once."""
+        if self._is_open:
+            self._is_open = False
+            line.call(self.which, "close")
 
 
 def _plain(value):
