@@ -18,7 +18,8 @@ MAY_IMPORT = {
     "host": {"protocol", "host"},
     "hil_sim": {"hil_sim"},  # it loads protocol and firmware as the image of a board, never as its own modules
 }
-ON_A_BOARD = {"array", "binascii", "collections", "gc", "json", "machine", "micropython", "os", "struct", "sys", "time"}
+ON_A_BOARD = {"array", "binascii", "collections", "gc", "hashlib", "json", "machine", "micropython", "os"}
+ON_A_BOARD |= {"struct", "sys", "time"}
 RUN_BY_THE_BOARD = ("firmware/boot.py", "firmware/start.py")
 IN_A_PROCESS_OF_ITS_OWN = ("hil_sim", "worlds", "shim")  # MicroPython's modules of world T2, which are the machine
 KNOW_THE_MACHINE = (*RUN_BY_THE_BOARD, "firmware/main.py")

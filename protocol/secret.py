@@ -1,0 +1,70 @@
+"""What a pairing key is used for: the key of a session, the tags of its frames, and numbers that nobody can foretell.
+
+The key itself never crosses the wire. Both ends prove that they have it by the tags they make: HMAC-SHA256 (RFC 2104)
+over direction, extended sequence number and frame, cut to its first eight bytes. Each use of a key begins with words
+of its own, so that no value made for one purpose serves another.
+
+    pads = prepared(key)
+    session = session_key(pads, number, host_a, host_b, robot_a, robot_b, dictionary_crc)
+    tag(session, False, 7, body)
+"""
+
+import struct
+from hashlib import sha256
+
+from protocol.frames import VERSION
+
+KEY_BYTES = 32
+TAG_BYTES = 8
+_BLOCK = 64
+_INNER = int.from_bytes(b"\x36" * _BLOCK, "little")
+_OUTER = int.from_bytes(b"\x5c" * _BLOCK, "little")
+
+
+def prepared(key: bytes) -> bytes:
+    """Return both pads of a key, one after the other, so that they are made only once; ValueError above 64 bytes."""
+    if len(key) > _BLOCK:
+        raise ValueError(f"key {len(key)} bytes, at most {_BLOCK}")
+    number = int.from_bytes(key, "little")
+    return (number ^ _INNER).to_bytes(_BLOCK, "little") + (number ^ _OUTER).to_bytes(_BLOCK, "little")
+
+
+def hmac(pads: bytes, head: bytes, message: bytes = b"") -> bytes:
+    """Return the 32 bytes of HMAC-SHA256 over `head` and `message`, by the pads of a key."""
+    inner = sha256(pads[:_BLOCK])
+    inner.update(head)
+    inner.update(message)
+    outer = sha256(pads[_BLOCK:])
+    outer.update(inner.digest())
+    return outer.digest()
+
+
+def session_key(
+    pads: bytes, session: int, host_a: int, host_b: int, robot_a: int, robot_b: int, dictionary_crc: int
+) -> bytes:
+    """Return the prepared key of one session, which both ends make of what `hello` and `identity` said."""
+    said = struct.pack("<BIIIIII", VERSION, session, host_a, host_b, robot_a, robot_b, dictionary_crc)
+    return prepared(hmac(pads, b"softrig session", said))
+
+
+def proof(session: bytes) -> tuple:
+    """Return the two numbers by which the robot shows in its `identity` that it made the same key of the session."""
+    return struct.unpack("<II", hmac(session, b"softrig proof")[:8])
+
+
+def nonce(pads: bytes, salt: bytes, start: int, count: int) -> tuple:
+    """Return two numbers that nobody without the key foretells, and that never come again for another count."""
+    return struct.unpack("<II", hmac(pads, b"softrig nonce", salt + struct.pack("<II", start, count))[:8])
+
+
+def tag(session: bytes, device: bool, number: int, body: bytes) -> bytes:
+    """Return the tag of a frame from the robot, or from its host; `body` is all of it that goes before the tag."""
+    return hmac(session, struct.pack("<BI", device, number), body)[:TAG_BYTES]
+
+
+def same(tag: bytes, other: bytes) -> bool:
+    """Return whether two tags are the same; how long that takes tells nothing of where they differ."""
+    differing = len(tag) ^ len(other)
+    for i in range(min(len(tag), len(other))):
+        differing |= tag[i] ^ other[i]
+    return differing == 0
