@@ -18,6 +18,7 @@ from types import CodeType
 
 AT_ROOT = {"firmware/boot.py": "boot.py", "firmware/start.py": "main.py"}
 PACKAGES = ("firmware", "protocol")
+KINDS = (".py", ".txt")  # of the files of a package that a board needs
 PROFILE = "robot.json"
 SLOT = "a"
 
@@ -36,7 +37,7 @@ class Image:
         files: dict[str, bytes | Path] = {f"{SLOT}/{PROFILE}": profile}
         for package in PACKAGES:
             folder = _folder(package)
-            for place in sorted(folder.rglob("*.py")):
+            for place in sorted(place for place in folder.rglob("*") if place.suffix in KINDS):
                 path = f"{package}/{place.relative_to(folder).as_posix()}"
                 files[AT_ROOT.get(path) or f"{SLOT}/{path}"] = place
         return cls(files)

@@ -13,6 +13,7 @@ from host.errors import BadRequest
 
 AT_ROOT = {"firmware/boot.py": "boot.py", "firmware/start.py": "main.py"}
 PACKAGES = ("firmware", "protocol")
+KINDS = (".py", ".txt")  # of the files of a package that a board needs
 PROFILE = "robot.json"
 
 
@@ -23,8 +24,9 @@ class Image:
         self.slot = {PROFILE: _profile(robot_name).read_bytes()}
         self.root: dict[str, bytes] = {}
         for package in PACKAGES:
-            for place in sorted(_folder(package).rglob("*.py")):
-                path = f"{package}/{place.relative_to(_folder(package)).as_posix()}"
+            folder = _folder(package)
+            for place in sorted(place for place in folder.rglob("*") if place.suffix in KINDS):
+                path = f"{package}/{place.relative_to(folder).as_posix()}"
                 if path in AT_ROOT:
                     self.root[AT_ROOT[path]] = place.read_bytes()
                 else:

@@ -37,6 +37,11 @@ class Bytes(io.IOBase):
         self.readinto(buffer)
         return bytes(buffer)
 
+    def seek(self, offset, whence=0) -> int:
+        """Go to a place, counted from the beginning, from here or from the end, and return it."""
+        self._at = offset + (0, self._at, self._size)[whence]
+        return self._at
+
     def ioctl(self, request, argument) -> int:
         """Close, the one thing that is asked."""
         return 0
