@@ -1,0 +1,89 @@
+"""The table of variables: what a subscription may ask for, and a record of telemetry carries.
+
+A variable is a name, whose end is the unit, and a struct letter; a `*` behind it stands for one value for each coil, in
+the order of the robot's channels. Its number is its place in the table. A record holds the values one after the other
+in the order in which they were asked for, little endian, no padding; what one means is the comment beside it.
+
+    numbers = [number("state"), number("coil_decidegc")]
+    size(numbers, coils=8)
+    state, coil_decidegc = unpack(numbers, values, coils=8)
+"""
+
+import struct
+from collections import namedtuple
+
+Variable = namedtuple("Variable", ("name", "letter"))
+
+VARIABLES = (
+    Variable("state", "B"),  # State of the robot. [STATES]
+    Variable("code", "H"),  # Last fault, 0: none since boot. [CODES]
+    Variable("step", "H"),  # Step of the program, 0: none.
+    Variable("coils_on", "I"),  # Bit mask of the coils that are on.
+    Variable("without", "I"),  # Bit mask of the coils known to be broken.
+    Variable("lease_left_ms", "H"),  # What is left of the lease, 0: none.
+    Variable("supply_mv", "H"),  # Supply voltage at the coils' rail.
+    Variable("current_ma", "H"),  # Supply current.
+    Variable("board_decidegc", "h"),  # Temperature of the board.
+    Variable("roll_decideg", "h"),  # Lean to the right; 0 when the attitude is not known. [-900..900]
+    Variable("pitch_decideg", "h"),  # Turn forward since upright; 0 when the attitude is not known. [-1800..1800]
+    Variable("down", "B"),  # Channel of the coil whose direction is nearest to down; 255: the attitude is not known.
+    Variable("dropped", "H"),  # Damaged frames since boot, modulo 65536.
+    Variable("resent", "H"),  # Frames that the robot had to send again in this session, modulo 65536.
+    Variable("overruns", "H"),  # Control steps that came late, modulo 65536.
+    Variable("duty_permille", "H*"),  # Share of the PWM period that the coil is on. [0..1000]
+    Variable("coil_decidegc", "h*"),  # Estimated temperature of the coil.
+    Variable("heat_permille", "H*"),  # Share of the coil's heat budget that is spent.
+    Variable("resistance_mohm", "I*"),  # Resistance of the coil as measured last, 0: not measured.
+    Variable("martensite_permille", "H*"),  # Share of martensite by that resistance, 65535: not known.
+    Variable("least_decidegc", "h*"),  # What the coil's temperature was at least by that resistance, -32768: no bound.
+    Variable("most_decidegc", "h*"),  # What the coil's temperature was at most by that resistance, 32767: no bound.
+)
+
+
+def number(name: str) -> int:
+    """Return the number of the variable of that name, or -1."""
+    for place in range(len(VARIABLES)):
+        if VARIABLES[place].name == name:
+            return place
+    return -1
+
+
+def layout(numbers, coils: int) -> str:
+    """Return the struct format of a record of these variables of a robot with so many coils."""
+    parts = ["<"]
+    for place in numbers:
+        letter = VARIABLES[place].letter
+        parts.append(f"{coils}{letter[0]}" if len(letter) > 1 else letter)
+    return "".join(parts)
+
+
+def size(numbers, coils: int) -> int:
+    """Return how many bytes the values of these variables take."""
+    return struct.calcsize(layout(numbers, coils))
+
+
+def unpack(numbers, values: bytes, coils: int) -> list:
+    """Return the value of each variable, a tuple where there is one for each coil; ValueError when they do not fit."""
+    form = layout(numbers, coils)
+    if struct.calcsize(form) != len(values):
+        raise ValueError(f"{len(values)} bytes of values, expected {struct.calcsize(form)}")
+    flat = struct.unpack(form, values)
+    found, at = [], 0
+    for place in numbers:
+        if len(VARIABLES[place].letter) > 1:
+            found.append(flat[at : at + coils])
+            at += coils
+        else:
+            found.append(flat[at])
+            at += 1
+    return found
+
+
+# What a host that asks for nothing else is told, and what every listener can read.
+USUAL = tuple([
+    number(name)
+    for name in (
+        "state", "step", "supply_mv", "current_ma", "board_decidegc", "roll_decideg", "pitch_decideg", "down",
+        "duty_permille", "coil_decidegc",
+    )
+])  # fmt: skip
