@@ -166,6 +166,30 @@ CODES = (
         "Start it again if it is wanted.",
     ),
     Code(
+        codes.UNKNOWN_VARIABLE, "R26", "",
+        "The robot has no variable of that number.",
+        NOTHING,
+        "`softrig watch --list` names those there are; update the older of robot and host.",
+    ),
+    Code(
+        codes.RECORD_LIMIT, "R27", "bytes",
+        "The variables do not fit into one record of telemetry.",
+        NOTHING,
+        "Ask for fewer, or share them out to several slots.",
+    ),
+    Code(
+        codes.PERIOD_LIMIT, "R28", "ms",
+        "The period of telemetry is shorter than a control step.",
+        NOTHING,
+        "Ask for a longer one: nothing changes within a step.",
+    ),
+    Code(
+        codes.SLOT_LIMIT, "R29", "",
+        "The robot has no such slot of telemetry.",
+        NOTHING,
+        "Use one of those there are, counted from 0.",
+    ),
+    Code(
         codes.STOP, "F01", "",
         "A stop was received.",
         ALL_OFF,
