@@ -5,7 +5,7 @@ over direction, extended sequence number and frame, cut to its first eight bytes
 of its own, so that no value made for one purpose serves another.
 
     pads = prepared(key)
-    session = session_key(pads, number, host_a, host_b, robot_a, robot_b, dictionary_crc)
+    session = session_key(pads, hello, identity.nonce_a, identity.nonce_b, identity.dictionary_crc)
     tag(session, False, 7, body)
 """
 
@@ -39,12 +39,10 @@ def hmac(pads: bytes, head: bytes, message: bytes = b"") -> bytes:
     return outer.digest()
 
 
-def session_key(
-    pads: bytes, session: int, host_a: int, host_b: int, robot_a: int, robot_b: int, dictionary_crc: int
-) -> bytes:
-    """Return the prepared key of one session, which both ends make of what `hello` and `identity` said."""
-    said = struct.pack("<BIIIIII", VERSION, session, host_a, host_b, robot_a, robot_b, dictionary_crc)
-    return prepared(hmac(pads, b"softrig session", said))
+def session_key(pads: bytes, hello, robot_a: int, robot_b: int, dictionary_crc: int) -> bytes:
+    """Return the prepared key of the session that `hello` asked for; it is made of all that hello says."""
+    said = struct.pack("<III", robot_a, robot_b, dictionary_crc)
+    return prepared(hmac(pads, b"softrig session", _said(hello) + said))
 
 
 def proof(session: bytes) -> tuple:
@@ -52,9 +50,12 @@ def proof(session: bytes) -> tuple:
     return struct.unpack("<II", hmac(session, b"softrig proof")[:8])
 
 
-def nonce(pads: bytes, salt: bytes, start: int, count: int) -> tuple:
-    """Return two numbers that nobody without the key foretells, and that never come again for another count."""
-    return struct.unpack("<II", hmac(pads, b"softrig nonce", salt + struct.pack("<II", start, count))[:8])
+def nonce(pads: bytes, start: int, begun: int, hello) -> tuple:
+    """Return two numbers that nobody without the key foretells, the same for the same hello said again.
+
+    They are others in another start of the robot, and after another session of that start has begun.
+    """
+    return struct.unpack("<II", hmac(pads, b"softrig nonce", struct.pack("<II", start, begun) + _said(hello))[:8])
 
 
 def tag(session: bytes, device: bool, number: int, body: bytes) -> bytes:
@@ -68,3 +69,7 @@ def same(tag: bytes, other: bytes) -> bool:
     for i in range(min(len(tag), len(other))):
         differing |= tag[i] ^ other[i]
     return differing == 0
+
+
+def _said(hello) -> bytes:
+    return struct.pack("<BIIII", VERSION, hello.session, hello.attach, hello.nonce_a, hello.nonce_b)

@@ -3,6 +3,7 @@
 import hmac
 import random
 import subprocess
+from collections import namedtuple
 from hashlib import sha256
 from pathlib import Path
 
@@ -10,6 +11,8 @@ import pytest
 
 from hil_sim.worlds.micropython import interpreter
 from protocol import secret
+
+Hello = namedtuple("Hello", ("session", "attach", "nonce_a", "nonce_b"))
 
 # RFC 4231, section 4: key, data, HMAC-SHA-256 (cases 1 to 5; the others need keys that are longer than a block)
 VECTORS = (
@@ -22,12 +25,15 @@ VECTORS = (
 ON_MICROPYTHON = """
 import sys
 sys.path.insert(0, {root!r})
+from collections import namedtuple
 from binascii import hexlify, unhexlify
 from protocol import secret
 for line in {lines!r}.split():
     key, message = [unhexlify(part) for part in line.split("-")]
     print(hexlify(secret.hmac(secret.prepared(key), message)).decode())
-session = secret.session_key(secret.prepared(bytes(range(32))), 7, 1, 0xFFFFFFFF, 0x80000000, 4, 0xDEADBEEF)
+Hello = namedtuple("Hello", ("session", "attach", "nonce_a", "nonce_b"))
+pads = secret.prepared(bytes(range(32)))
+session = secret.session_key(pads, Hello(7, 1, 0xFFFFFFFF, 0x80000000), 4, 5, 0xDEADBEEF)
 print(hexlify(secret.tag(session, True, 0xFFFFFFFF, b"body")).decode(), secret.proof(session))
 """
 
@@ -52,7 +58,7 @@ def test_a_key_that_is_longer_than_a_block_is_a_mistake():
 
 
 def test_a_tag_tells_direction_number_and_every_bit_of_the_body_apart():
-    key = secret.session_key(secret.prepared(bytes(32)), 1, 2, 3, 4, 5, 6)
+    key = secret.session_key(secret.prepared(bytes(32)), Hello(1, 2, 3, 4), 5, 6, 7)
     frames = [(False, 7, b"\x01\x02"), (True, 7, b"\x01\x02"), (False, 263, b"\x01\x02")]
     frames += [(False, 7, (0x0201 ^ 1 << bit).to_bytes(2, "little")) for bit in range(16)]
 
@@ -63,13 +69,13 @@ def test_a_tag_tells_direction_number_and_every_bit_of_the_body_apart():
 
 
 def test_every_word_of_both_greetings_makes_another_session_key():
-    words = (1, 2, 3, 4, 5, 6)
     pads = secret.prepared(bytes(32))
-    keys = {secret.session_key(pads, *words)}
+    words = [1, 2, 3, 4, 5, 6, 7]
+    said = [words] + [[word + (i == place) for i, word in enumerate(words)] for place in range(7)]
 
-    keys |= {secret.session_key(pads, *(word + (i == place) for i, word in enumerate(words))) for place in range(6)}
+    keys = {secret.session_key(pads, Hello(*row[:4]), *row[4:]) for row in said}
 
-    assert len(keys) == 7
+    assert len(keys) == 8
 
 
 def test_a_tag_is_the_same_only_if_all_of_it_is():
@@ -79,14 +85,14 @@ def test_a_tag_is_the_same_only_if_all_of_it_is():
     )
 
 
-def test_a_nonce_comes_never_again_under_another_salt_start_or_count():
+def test_a_nonce_is_another_in_each_start_after_each_session_and_for_each_hello():
     pads = secret.prepared(bytes(32))
+    hellos = [Hello(session, attach, a, b) for session in (1, 2) for attach in (0, 1) for a in (0, 1) for b in (0, 1)]
 
-    made = {
-        secret.nonce(pads, bytes((salt,)), start, count) for salt in (0, 1) for start in (1, 2) for count in range(9)
-    }
+    made = {secret.nonce(pads, start, begun, hello) for start in (1, 2) for begun in (0, 1) for hello in hellos}
 
-    assert len(made) == 36
+    assert len(made) == 64
+    assert secret.nonce(pads, 1, 0, hellos[0]) == secret.nonce(pads, 1, 0, hellos[0])
 
 
 def test_micropython_makes_the_same_of_them(tmp_path):
@@ -96,6 +102,7 @@ def test_micropython_makes_the_same_of_them(tmp_path):
 
     said = subprocess.run([interpreter(), str(script)], capture_output=True, text=True, check=True).stdout.splitlines()
 
-    session = secret.session_key(secret.prepared(bytes(range(32))), 7, 1, 0xFFFFFFFF, 0x80000000, 4, 0xDEADBEEF)
+    hello = Hello(7, 1, 0xFFFFFFFF, 0x80000000)
+    session = secret.session_key(secret.prepared(bytes(range(32))), hello, 4, 5, 0xDEADBEEF)
     ours = [secret.hmac(secret.prepared(key), data).hex() for key, data, _ in VECTORS]
     assert said == [*ours, f"{secret.tag(session, True, 0xFFFFFFFF, b'body').hex()} {secret.proof(session)}"]
