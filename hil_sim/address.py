@@ -1,9 +1,9 @@
-"""Addresses of the bench: `sim:NAME?option=value&...`, read into a robot file and the options of a run.
+"""Addresses of the bench: `sim:NAME[@NODE]?option=value&...`, read into a robot file and the options of a run.
 
     parse("sim:circular?slope=10&seed=2&set=shell.mass_g:2.0&open=A,C")
 
-NAME is a robot of the bench or the path of a robot file. Whatever cannot be read raises AddressError with what is
-allowed and what was perhaps meant.
+NAME is a robot of the bench or the path of a robot file, NODE its number on a bus, which node= gives as well. Whatever
+cannot be read raises AddressError with what is allowed and what was perhaps meant.
 """
 
 from dataclasses import dataclass, field
@@ -18,10 +18,11 @@ SHORT = {
     "mu": "ground.friction_ratio",
     "supply": "wiring.supply_v",
 }
-OPTIONS = (*SHORT, "seed", "set", "open", "world", "baud", "body", "faults")
+OPTIONS = (*SHORT, "seed", "set", "open", "world", "baud", "body", "faults", "node")
 WORLDS = ("cpython", "micropython")
 BODIES = ("moving", "still")
 BAUD_MAX = 4_000_000
+NODE_MAX = 126
 
 
 class AddressError(ValueError):
@@ -40,6 +41,7 @@ class Address:
     open: tuple[str, ...] = ()  # coils whose wire is broken
     body: str = BODIES[0]
     faults: str = ""  # path of a fault file
+    node: int = 0  # its number on a bus, which it was given before; 0: none was
 
 
 def parse(text: str) -> Address:
@@ -47,7 +49,11 @@ def parse(text: str) -> Address:
     robot, _, query = text.removeprefix("sim:").partition("?")
     if not robot:
         raise AddressError("no robot in the address: write sim:circular")
-    address = Address(unquote(robot))
+    name, _, number = robot.rpartition("@")
+    numbered = bool(name) and number.isdigit()
+    address = Address(unquote(name if numbered else robot))
+    if numbered:
+        _take(address, "node", number)
     for part in filter(None, query.split("&")):
         name, equals, value = part.partition("=")
         if name not in OPTIONS:
@@ -72,6 +78,8 @@ def _take(address: Address, name: str, value: str) -> None:
         address.seed = _whole(name, value, 0, 2**32 - 1)
     elif name == "baud":
         address.baud = _whole(name, value, 300, BAUD_MAX)
+    elif name == "node":
+        address.node = _whole(name, value, 1, NODE_MAX)
     elif name == "faults":
         address.faults = value
     elif name == "body":

@@ -2,9 +2,12 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 from hil_sim.address import BODIES, Address
 from hil_sim.bench import Bench, Parts, Plant
+from hil_sim.clock import Clock
+from hil_sim.devices.canwire import CanWire
 from hil_sim.devices.ntc import Ntc
 from hil_sim.faults.file import load as load_faults
 from hil_sim.faults.file import plan
@@ -17,13 +20,13 @@ from hil_sim.soundness import CameApart
 from hil_sim.sphere import SpherePlant
 from hil_sim.still import still
 from hil_sim.supply import Battery
-from hil_sim.worlds import cpython, micropython
+from hil_sim.worlds import cpython, micropython, preset
 from hil_sim.worlds.image import Image
 from hil_sim.worlds.world import Interpreter
 
 
-def assemble(address: Address) -> Bench:
-    """Return the bench of an address, powered on at time 0.
+def assemble(address: Address, clock: Clock | None = None, can_wire: CanWire | None = None) -> Bench:
+    """Return the bench of an address, powered on, with a clock and a CAN bus of its own unless they are given.
 
     RobotFileError when its robot cannot be built, FaultFileError when its fault file cannot be used.
     """
@@ -36,12 +39,16 @@ def assemble(address: Address) -> Bench:
     _agree(robot, profile)
     image = Image.installed(profile)
     execute = interpreter_of(address.world)
-    identity = f"{robot.name} {address.seed}"
+    identity = f"{robot.name} {address.seed}" + (f" {address.node}" if address.node else "")
+    wired: dict[str, Any] = {"baud": address.baud, "identity": identity, "clock": clock, "can_wire": can_wire}
     try:
         plant = plant_of(robot, address.seed, address.body)
-        bench = Bench(parts_of(robot), plant, image, execute, baud=address.baud, identity=identity)
+        bench = Bench(parts_of(robot), plant, image, execute, **wired)
     except (ArithmeticError, CameApart) as error:
         raise RobotFileError(f"{robot.name} cannot be built from these numbers: {error}") from error
+    if address.node:
+        for path, data in preset.number(image, address.node).items():
+            bench.board.flash.store(path, data)
     for label in address.open:
         schedule(bench, bench.clock.now_us, f"coil-open:{label}")
     plan(bench, faults)

@@ -7,6 +7,8 @@ how often, or how fast. The bench moves bytes and switches coils; it can read ne
     bench.run(seconds=2)
     bench.coil_gate("A"), bench.coil("A").on_us(bench.clock.now_us)
     bench.close()
+
+Several robots live in lock-step on one clock, and on one CAN bus, when each bench is given both (candesk.py).
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -18,6 +20,7 @@ from numpy.typing import NDArray
 
 from hil_sim.board import Board
 from hil_sim.clock import Clock
+from hil_sim.devices.canwire import CanWire
 from hil_sim.devices.flash import Flash
 from hil_sim.devices.lsm6ds3tr import Motion
 from hil_sim.devices.ntc import Ntc
@@ -74,7 +77,7 @@ class Parts:
 
 
 class Bench:
-    """One robot on the bench, powered on at time 0; a body that comes apart ends it with CameApart."""
+    """One robot on the bench, powered on as it is made; a body that comes apart ends it with CameApart."""
 
     def __init__(
         self,
@@ -87,29 +90,33 @@ class Bench:
         identity: str = "softrig",
         ticks_start_us: int = 0,
         keep_journal: bool = False,
+        clock: Clock | None = None,
+        can_wire: CanWire | None = None,
     ) -> None:
-        self.clock = Clock()
+        self.closed = False
+        self._shares = clock is not None
+        self.clock = clock or Clock()
         self.journal = Journal(keep_journal)
         self.plant = plant
         series_ohm = np.array(parts.series_ohm, float)
         self.supply = Supply(series_ohm, parts.source_ohm, parts.shunt_ohm, parts.supply_v, parts.battery)
         motion = plant if parts.imu and isinstance(plant, Motion) else None
         ntc = parts.ntc or Ntc()
-        self.board = Board(self.clock, self.journal, self.supply, parts.outputs, ntc, baud, identity, motion)
+        self.board = Board(self.clock, self.journal, self.supply, parts.outputs, ntc, baud, identity, motion, can_wire)
         self.board.flash = Flash({path: image.read(path) for path in image.paths()})
         self.board.degc = parts.ambient_degc
         self.board.changed = self._gates_changed
         self.coils = [CoilRecord(label) for label in plant.labels]
         self.world = World(self.board, image, execute, ticks_start_us)
         self._by_label = {coil.label: coil for coil in self.coils}
-        self._advanced_us = 0
+        self._began_us = self._advanced_us = self.clock.now_us
         self._hot = False
         self._soundness = Soundness()
-        self._soundness.look(plant.snapshot(), 0.0)
+        self._soundness.look(plant.snapshot(), self.clock.now_us / 1e6)
         self._peak_degc = plant.temperature.copy()
         self._energy_j = np.zeros(len(self.coils))
         self._glance: Callable[[int], None] | None = None
-        self.clock.at(GRID_US, self._grid)
+        self._grid_at = self.clock.at(self.clock.now_us + GRID_US, self._grid)
         self.world.power_on()
 
     def run(self, seconds: float) -> None:
@@ -177,8 +184,18 @@ class Bench:
         self._glance = glance
 
     def close(self) -> None:
-        """End the firmware; a closed bench cannot be run again."""
+        """End the firmware; a closed bench cannot be run again. On a shared clock all its power goes off, too."""
+        if self.closed:
+            return
+        self.closed = True
+        self._grid_at.cancel()
         self.world.close()
+        self.board.unplug()
+        if self._shares:
+            self.world.power_off()
+            self._advance()
+            for coil in self.coils:
+                coil.switch(0.0, self.clock.now_us)
 
     def _grid(self) -> None:
         self._advance()
@@ -186,9 +203,9 @@ class Bench:
             self.board.monitor.before_change()
             self.supply.solve(self.plant.resistance)
             self.board.monitor.after_change()
-        if self.clock.now_us % EVERY_US == 0:
+        if (self.clock.now_us - self._began_us) % EVERY_US == 0:
             self._soundness.look(self.plant.snapshot(), self.clock.now_us / 1e6)
-        self.clock.at(self.clock.now_us + GRID_US, self._grid)
+        self._grid_at = self.clock.at(self.clock.now_us + GRID_US, self._grid)
         if self._glance is not None:
             self._glance(self.clock.now_us // 1000)
         if self.world.running and self.supply.battery is not None and self.supply.battery.cut:

@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from hil_sim.clock import Clock
+from hil_sim.devices.canframe import Frame
 from hil_sim.devices.canwire import CanWire
 from hil_sim.devices.flash import Flash
 from hil_sim.devices.gpio import OUT, Gpio
@@ -30,7 +31,7 @@ from hil_sim.devices.remanence import Remanence
 from hil_sim.devices.servo import Servo
 from hil_sim.devices.spi import SpiBus
 from hil_sim.devices.uart import Uart
-from hil_sim.journal import ADC, FAULT, RESET, UART_HEARD, Journal
+from hil_sim.journal import ADC, CAN_HEARD, CAN_SENT, FAULT, RESET, UART_HEARD, Journal
 
 PWR_EN, HEARTBEAT, ESTOP_SENSE, ALERT = 2, 3, 6, 7
 SDA, SCL = 4, 5
@@ -90,7 +91,8 @@ class Board:
         self.uart = Uart(baud)
         self.monostable = Monostable(clock, HEARTBEAT_WINDOW_US, self._on_enable)
         self.gpio = Gpio(clock, journal)
-        self.can = Mcp2515(clock, can_wire or CanWire(clock))
+        self.can_wire = can_wire or CanWire(clock)
+        self.can = Mcp2515(clock, self.can_wire, passed=self._on_frame)
         self.spi = SpiBus({CAN_SELECT: self.can}, lambda pin: self.gpio.mode(pin) == OUT and not self.gpio.driven(pin))
         self.pulses = PwmSlices(clock, journal)
         self.servos = {pin: Servo() for pin in SERVOS}
@@ -169,6 +171,15 @@ class Board:
         self.journal.note(self.clock.now_us, FAULT, ESTOP_SENSE, b"\x01" if closed else b"\x00")
         self.estop_closed = closed
         self._on_enable()
+
+    def unplug(self) -> None:
+        """Take the board off the CAN bus for good."""
+        if self.can.can in self.can_wire.nodes:
+            self.can_wire.leave(self.can.can)
+
+    def _on_frame(self, frame: Frame, outward: bool) -> None:
+        flags = bytes((frame.extended << 1 | frame.remote, frame.length))
+        self.journal.note(self.clock.now_us, CAN_SENT if outward else CAN_HEARD, frame.id, flags + frame.data)
 
     def _on_beat(self) -> None:
         self.monostable.edge()

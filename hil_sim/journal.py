@@ -12,8 +12,11 @@ import hashlib
 import marshal
 from itertools import repeat
 
-PIN, I2C_WRITE, I2C_READ, ADC, UART_SENT, UART_HEARD, FAULT, RESET, FLASH, SPI, PWM = range(11)
-KINDS = ("pin", "i2c write", "i2c read", "adc", "uart sent", "uart heard", "fault", "reset", "flash", "spi", "pwm")
+PIN, I2C_WRITE, I2C_READ, ADC, UART_SENT, UART_HEARD, FAULT, RESET, FLASH, SPI, PWM, CAN_SENT, CAN_HEARD = range(13)
+KINDS = (
+    "pin", "i2c write", "i2c read", "adc", "uart sent", "uart heard", "fault", "reset", "flash", "spi", "pwm",
+    "can sent", "can heard",
+)  # fmt: skip
 
 Entry = tuple[int, int, int, bytes]
 _BATCH = 4096

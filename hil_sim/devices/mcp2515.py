@@ -17,7 +17,7 @@ from collections.abc import Callable
 
 from hil_sim.clock import Clock
 from hil_sim.devices.canwire import CanWire
-from hil_sim.devices.mcp2515can import Mcp2515Can
+from hil_sim.devices.mcp2515can import Mcp2515Can, Passed
 from hil_sim.devices.mcp2515filters import rx_status
 from hil_sim.devices.mcp2515flags import RX0IF, RX1IF
 from hil_sim.devices.mcp2515registers import BIT_MODIFIABLE, D0, RX, SIDH, TX, plain
@@ -29,16 +29,24 @@ FLOATING = 0x00
 
 
 class Mcp2515:
-    """One chip on `wire`, its crystal of `crystal_hz`; `interrupted` is called when the level of INT has changed."""
+    """One chip on `wire`, its crystal of `crystal_hz`.
+
+    `interrupted` is called when the level of INT has changed, `passed` with each frame that it has sent or heard.
+    """
 
     rate_max_hz: int = 10_000_000
     modes: tuple[int, ...] = (0, 3)
 
     def __init__(
-        self, clock: Clock, wire: CanWire, crystal_hz: int = 8_000_000, interrupted: Callable[[], None] = lambda: None
+        self,
+        clock: Clock,
+        wire: CanWire,
+        crystal_hz: int = 8_000_000,
+        interrupted: Callable[[], None] = lambda: None,
+        passed: Passed = lambda frame, outward: None,
     ) -> None:
         self._alive = True
-        self.can = Mcp2515Can(clock, wire, crystal_hz, interrupted)
+        self.can = Mcp2515Can(clock, wire, crystal_hz, interrupted, passed)
         self._clock = clock
         self._start_us = -(-START_CLOCKS * 1_000_000 // crystal_hz)
         self._selected = False

@@ -28,17 +28,21 @@ ABTF, MLOA, TXERR, TXREQ, PRIORITY = 0x40, 0x20, 0x10, 0x08, 0x03  # in TXBnCTRL
 BUKT1 = 0x02  # in RXB0CTRL
 BUFFERS = range(3)
 _COUNT_MAX = 255
+Passed = Callable[[Frame, bool], None]  # a frame that has crossed the pins, outward or inward
 
 
 class Mcp2515Can:
-    """One chip on `wire`, with its interrupt `flags`; `interrupted` is called when the level of INT has changed."""
+    """One chip on `wire`, with its interrupt `flags`; `interrupted` and `passed` are those of Mcp2515."""
 
-    def __init__(self, clock: Clock, wire: CanWire, crystal_hz: int, interrupted: Callable[[], None]) -> None:
+    def __init__(
+        self, clock: Clock, wire: CanWire, crystal_hz: int, interrupted: Callable[[], None], passed: Passed
+    ) -> None:
         self.errors = Errors()
         self.silent = False
         self.bit_ns = 0
         self._clock = clock
         self.wire = wire
+        self._passed = passed
         self._crystal_hz = crystal_hz
         self.registers = regs.after_reset()
         self.flags = Flags(self.registers, self.errors, interrupted)
@@ -129,6 +133,11 @@ class Mcp2515Can:
 
     def sent(self) -> None:
         """Take the request back and interrupt."""
+        if self._sending is not None:
+            self._passed(regs.frame_of(self.registers, regs.TX[self._sending]), True)
+        self._settle()
+
+    def _settle(self) -> None:
         buffer, self._sending = self._sending, None
         if buffer is not None:
             self.flags.note_errors()
@@ -148,6 +157,10 @@ class Mcp2515Can:
 
     def heard(self, frame: Frame) -> None:
         """Put a frame into the buffer whose filters let it pass, or note that this one is full."""
+        self._passed(frame, False)
+        self._receive(frame)
+
+    def _receive(self, frame: Frame) -> None:
         self.flags.note_errors()
         self.flags.set(receive(self.registers, frame))
 
@@ -215,8 +228,8 @@ class Mcp2515Can:
 
     def _looped(self, frame: Frame) -> None:
         self._loop_at = None
-        self.heard(frame)
-        self.sent()
+        self._receive(frame)
+        self._settle()
         self._loop()
 
     def _wake_if_told(self) -> None:

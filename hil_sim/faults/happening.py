@@ -31,7 +31,9 @@ class Happening:
         self._mend: Mend | None = None
 
     def begin(self) -> None:
-        """Let it happen."""
+        """Let it happen, unless the bench was closed before."""
+        if self._bench.closed:
+            return
         self._note(BEGUN)
         self._mend = self._fault.happen(self._bench, self._value, self._draw)
 
