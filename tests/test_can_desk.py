@@ -72,11 +72,11 @@ def test_closing_one_robot_leaves_the_others_running(company):
 
 
 def test_a_closed_robot_has_no_power_whatever_is_broken(company):
-    company.run_ms(200)
     bench = company.benches[0]
+    bench.witness.excuse(Excuse(late_us=300_000))  # two faults at once
+    company.run_ms(200)
     for fault in ("contactor-welded", "mosfet-stuck:A"):
         schedule(bench, 200_000, fault)
-    bench.witness.excuse(Excuse(late_us=300_000))  # two faults at once
     company.run_ms(50)
     assert bench.coil_gate("A") == 1.0
 
