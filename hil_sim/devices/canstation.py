@@ -5,16 +5,22 @@ station.send(Frame(0x123, b"hello"))
 station.received
 """
 
+from dataclasses import replace
+
 from hil_sim.devices.canerrors import Errors
 from hil_sim.devices.canframe import Frame
 from hil_sim.devices.canwire import CanWire
 
 
 class CanStation:
-    """Sends what it is given, in that order, again and again until each is acknowledged; keeps what it hears."""
+    """Sends what it is given, in that order, again and again until each is acknowledged; keeps what it hears.
 
-    def __init__(self, wire: CanWire, bitrate_hz: int, silent: bool = False) -> None:
+    With a `data_bitrate_hz` it knows CAN FD.
+    """
+
+    def __init__(self, wire: CanWire, bitrate_hz: int, silent: bool = False, data_bitrate_hz: int = 0) -> None:
         self.bit_ns = 1_000_000_000 // bitrate_hz
+        self.data_bit_ns = 1_000_000_000 // data_bitrate_hz if data_bitrate_hz else 0
         self.silent = silent
         self.errors = Errors()
         self.waiting: list[Frame] = []
@@ -24,13 +30,18 @@ class CanStation:
         wire.join(self)
 
     def send(self, frame: Frame) -> None:
-        """Queue a frame."""
+        """Queue a frame; ValueError for one of CAN FD from a classic controller."""
+        if frame.fd and not self.data_bit_ns:
+            raise ValueError("this controller has no bit rate for the data of CAN FD")
         self.waiting.append(frame)
         self._wire.request()
 
     def offered(self) -> Frame | None:
-        """Return the frame at the front of the queue."""
-        return self.waiting[0] if self.waiting else None
+        """Return the frame at the front of the queue; one of CAN FD says whether its sender is error-passive."""
+        if not self.waiting:
+            return None
+        frame = self.waiting[0]
+        return replace(frame, esi=True) if frame.fd and self.errors.passive else frame
 
     def edge(self) -> None:
         """Nothing sleeps here."""

@@ -82,9 +82,8 @@ class CanWire:
             node.began() if node in senders else node.edge()
         if passage.whole and self._spoiled:
             self._spoiled -= 1
-            passage.fail(len(passage.bits) // 2)
-        length_us = _us(passage.length_bits * passage.bit_ns)
-        self._clock.at(self._clock.now_us + length_us, lambda: self._finish(passage))
+            passage.fail(len(passage.bits.sent) // 2)
+        self._clock.at(self._clock.now_us + _us(passage.length_ns), lambda: self._finish(passage))
 
     def _finish(self, passage: Passage) -> None:
         present = self._present()

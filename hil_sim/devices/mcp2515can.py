@@ -40,6 +40,7 @@ class Mcp2515Can:
         self.errors = Errors()
         self.silent = False
         self.bit_ns = 0
+        self.data_bit_ns = 0  # a classic controller: it destroys frames of CAN FD as long as it may
         self._clock = clock
         self.wire = wire
         self._passed = passed
