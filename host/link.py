@@ -16,6 +16,7 @@ import re
 import select
 import socket
 import time
+from contextlib import suppress
 from importlib.metadata import entry_points
 from typing import Any, NoReturn, Protocol
 
@@ -26,10 +27,17 @@ BAUD = 115200
 CONNECT_S = 5.0
 WRITE_S = 2.0
 CHUNK = 65536
+LOST = (OSError, ValueError, TypeError)  # the last two are those of a port that closes while it is waited for
 
 
 class Link(Protocol):
-    """A line that carries bytes both ways, and the clock that its waiting goes by."""
+    """A line that carries bytes both ways, and the clock that its waiting goes by.
+
+    It may have two things more. `repeatable`, True where what passes over the line depends on nothing but its address,
+    as on a bench in this process: then the host brings neither its memory of other runs nor randomness of the system
+    into the run; missing means False. And `reopen()`, of a line that can break: it returns the same line, opened again,
+    or raises NoRobot; the broken one still tells the time and lets it pass by `pause(until_s)`.
+    """
 
     def now_s(self) -> float:
         """Return the host's clock: virtual on a bench in this process, monotonic on a port."""
@@ -79,9 +87,10 @@ def open_serial(address: str) -> Link:
     import serial  # noqa: PLC0415
 
     path = address.removeprefix("serial:")
+    refusals: tuple[type[Exception], ...] = (OSError, ValueError, *_terminal_errors())
     try:
         port = serial.Serial(path, BAUD, timeout=0, write_timeout=WRITE_S, exclusive=True)
-    except (OSError, ValueError) as error:
+    except refusals as error:
         _refuse_port(path, error)
     return SerialLink(port, path)
 
@@ -124,14 +133,14 @@ class SerialLink:
         """Send all of `data`; LinkLost when the port is gone or takes nothing for two seconds."""
         try:
             self._port.write(data)
-        except OSError as error:
+        except LOST as error:
             raise LinkLost(_lost(self._path, error)) from error
 
     def read(self, until_s: float) -> bytes:
         """Return bytes as soon as there are any, or b"" at `until_s`; LinkLost when the port is gone."""
         try:
             data = self._waited(max(0.0, until_s - time.monotonic()))
-        except (OSError, TypeError) as error:  # pyserial lets a TypeError out when its port closes under it
+        except LOST as error:
             raise LinkLost(_lost(self._path, error)) from error
         if data is None:
             raise LinkLost(_lost(self._path, None))
@@ -139,7 +148,17 @@ class SerialLink:
 
     def close(self) -> None:
         """Let go of the port."""
-        self._port.close()
+        with suppress(OSError):  # of one that has gone
+            self._port.close()
+
+    def reopen(self) -> Link:
+        """Return the same port, opened again."""
+        self.close()
+        return open_serial(self._path)
+
+    def pause(self, until_s: float) -> None:
+        """Let time pass without the port."""
+        time.sleep(max(0.0, until_s - time.monotonic()))
 
     def _waited(self, seconds: float) -> bytes | None:
         """Return what arrived within `seconds`; None at the end of the line."""
@@ -169,7 +188,7 @@ class SocketLink:
         try:
             self._line.settimeout(WRITE_S)
             self._line.sendall(data)
-        except OSError as error:
+        except LOST as error:
             raise LinkLost(_lost(self._address, error)) from error
 
     def read(self, until_s: float) -> bytes:
@@ -178,7 +197,7 @@ class SocketLink:
             if not select.select([self._line], [], [], max(0.0, until_s - time.monotonic()))[0]:
                 return b""
             data = self._line.recv(CHUNK)
-        except (OSError, ValueError) as error:
+        except LOST as error:
             raise LinkLost(_lost(self._address, error)) from error
         if not data:
             raise LinkLost(_lost(self._address, None))
@@ -186,14 +205,24 @@ class SocketLink:
 
     def close(self) -> None:
         """Let go of the connection."""
-        self._line.close()
+        with suppress(OSError):
+            self._line.close()
+
+    def reopen(self) -> Link:
+        """Return a new connection to the same place."""
+        self.close()
+        return open_socket(self._address)
+
+    def pause(self, until_s: float) -> None:
+        """Let time pass without the connection."""
+        time.sleep(max(0.0, until_s - time.monotonic()))
 
 
 def _refuse_port(path: str, error: Exception) -> NoReturn:
     """Raise the error that says why the port cannot be had and what to do."""
-    number = getattr(error, "errno", None)
+    number = getattr(error, "errno", error.args[0] if error.args else None)
     told: SoftrigError
-    if not os.path.exists(path) or number in (errno.ENOENT, errno.ENXIO, errno.ENODEV):
+    if not os.path.exists(path) or number in (errno.ENOENT, errno.ENXIO, errno.ENODEV, errno.EIO):
         told = PortAbsent(f"no port {path}: `softrig ports` lists those there are")
     elif number in (errno.EACCES, errno.EPERM):
         told = PortForbidden(f"no permission for {path}: {_permission_of(path)}")
@@ -202,6 +231,15 @@ def _refuse_port(path: str, error: Exception) -> NoReturn:
     else:
         told = PortAbsent(f"{path} is no serial port ({_one_line(error)}): `softrig ports` lists those there are")
     raise told from error
+
+
+def _terminal_errors() -> tuple[type[Exception], ...]:
+    """Return what a terminal raises that is taken away while it is set up: it is no OSError."""
+    try:
+        import termios  # noqa: PLC0415
+    except ImportError:
+        return ()
+    return (termios.error,)
 
 
 def _permission_of(path: str) -> str:
@@ -222,5 +260,5 @@ def _lost(address: str, error: Exception | None) -> str:
 
 def _one_line(error: Exception) -> str:
     """Return the error's text without the number and the lines after the first."""
-    text = getattr(error, "strerror", None) or (error.args[0] if error.args else "") or type(error).__name__
-    return str(text).splitlines()[0]
+    texts = [part for part in error.args if isinstance(part, str) and part]
+    return str(getattr(error, "strerror", None) or next(iter(texts), type(error).__name__)).splitlines()[0]

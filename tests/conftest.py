@@ -26,6 +26,14 @@ def fresh_kernels():
 
 
 @pytest.fixture(scope="session", autouse=True)
+def caches(tmp_path_factory):
+    """No test reads or writes the caches of whoever runs it."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
 def witnesses():
     """A witness of every bench from its first moment on; the list holds those that nobody has asked yet."""
     fresh, build = [], Bench.__init__

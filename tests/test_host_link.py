@@ -1,11 +1,14 @@
 """Real ports: ptys and sockets opened, held by others, and gone. The only host tests that go by the wall clock."""
 
+import errno
 import fcntl
 import os
 import pty
 import socket
+import struct
 import subprocess
 import sys
+import termios
 import tty
 from contextlib import suppress
 
@@ -117,6 +120,98 @@ def test_a_port_that_goes_away_is_a_lost_link(terminal):
     assert caught.value.exit_code == 7
     with pytest.raises(LinkLost):
         link.write(b"x" * 100)
+
+
+def test_a_port_that_takes_nothing_is_a_lost_link(terminal, monkeypatch):
+    monkeypatch.setattr("host.link.WRITE_S", 0.1)
+    link = open_link(terminal[1])
+
+    with pytest.raises(LinkLost, match="Write timeout"):
+        link.write(bytes(1 << 20))
+
+
+@pytest.mark.parametrize("error", [OSError(5, "EIO"), TypeError("fileno"), ValueError("filedescriptor out of range")])
+def test_whatever_waiting_for_a_port_raises_is_a_lost_link(terminal, monkeypatch, error):
+    def gone(*_):
+        raise error
+
+    link = open_link(terminal[1])
+    monkeypatch.setattr("select.select", gone)
+
+    with pytest.raises(LinkLost):
+        link.read(link.now_s() + 5)
+
+
+def test_a_port_that_was_closed_is_a_lost_link_and_closes_twice(terminal):
+    link = open_link(terminal[1])
+    link.close()
+    link.close()
+
+    with pytest.raises(LinkLost):
+        link.read(link.now_s() + 5)
+    with pytest.raises(LinkLost):
+        link.write(b"x")
+
+
+@pytest.mark.parametrize("number", [errno.EIO, errno.ENODEV, errno.ENXIO])
+def test_a_port_that_goes_away_while_it_is_opened_is_absent(terminal, monkeypatch, number):
+    def gone(*_):
+        raise termios.error(number, os.strerror(number))
+
+    monkeypatch.setattr("termios.tcflush", gone)
+
+    with pytest.raises(PortAbsent, match=f"no port {terminal[1]}"):
+        open_link(terminal[1])
+
+
+def test_a_port_is_opened_again_once_it_is_back(tmp_path):
+    first, second = pty.openpty(), pty.openpty()
+    port = tmp_path / "port"
+    port.symlink_to(os.ttyname(first[1]))
+    link = open_link(str(port))
+    os.close(first[0])
+    with pytest.raises(LinkLost):
+        link.read(link.now_s() + 5)
+
+    port.unlink()
+    with pytest.raises(PortAbsent):
+        link.reopen()
+    port.symlink_to(os.ttyname(second[1]))
+    again = link.reopen()
+
+    again.write(b"x")
+    assert os.read(second[0], 1) == b"x"
+    for descriptor in (first[1], *second):
+        os.close(descriptor)
+
+
+def test_the_clock_of_a_broken_port_goes_on(terminal):
+    link = open_link(terminal[1])
+    link.close()
+    until_s = link.now_s() + 0.02
+
+    link.pause(until_s)
+
+    assert link.now_s() >= until_s
+
+
+def test_a_connection_that_is_reset_is_a_lost_link_and_can_be_made_again(server):
+    address = f"socket://127.0.0.1:{server.getsockname()[1]}"
+    link = open_link(address)
+    other, _ = server.accept()
+    other.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))  # closed with RST
+    other.close()
+
+    with pytest.raises(LinkLost):
+        link.read(link.now_s() + 5)
+    again = link.reopen()
+    other, _ = server.accept()
+    again.write(b"x")
+
+    assert other.recv(1) == b"x"
+    link.close()
+    again.close()
+    other.close()
 
 
 def test_bytes_pass_both_ways_through_a_socket(server):
