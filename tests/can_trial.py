@@ -44,6 +44,8 @@ class Spi:
 
 spi = Spi()
 can = Mcp2515(spi, Select(), 8_000_000)
+can.accept(0, 0x7FF, (0,), False)
+can.accept(1, 0x1FFFFFFF, (0x155, 0x1ABCDEF5), True)
 can.begin(500_000)
 data = bytearray(range(8))
 if LOCKED:
@@ -51,7 +53,11 @@ if LOCKED:
 
     micropython.heap_lock()
 can.send(0x1FFFFFFF, data, 8, True)
-can.send(0x123, data, 3)
+can.send(0x123, data, 3, at=2)
+can.send(0x124, data, 3, False, True)
+can.has_sent()
+can.give_up()
+can.persist()
 can.receive()
 can.state()
 can.count_errors()

@@ -60,10 +60,67 @@ while sent < 10:
     assert rig.station.received == [Frame(0x100 + n % 2, bytes((n,))) for n in range(10)]
 
 
-def test_three_frames_find_room_and_a_fourth_does_not(tmp_path):
-    rig = Rig(tmp_path, "print([can.send(0x100, bytes(8), 8) for _ in range(4)])")
+def test_two_frames_find_room_and_a_third_does_not(tmp_path):
+    rig = Rig(tmp_path, "print([can.send(0x100, bytes(8), 8) for _ in range(3)])")
 
-    assert rig.run() == ["[True, True, True, False]"]
+    assert rig.run() == ["[True, True, False]"]
+
+
+def test_an_urgent_frame_overtakes_those_that_wait(tmp_path):
+    main = """
+data = bytearray(range(8))
+print([can.send(0x100, data, 1, at=1), can.send(0x100, data, 1, at=2)])
+print([can.send(0x7FF, data, 1, urgent=True, at=3), can.send(0x7FF, data, 1, urgent=True, at=4)])
+time.sleep_ms(2)
+print(can.send(0x7FF, data, 1, urgent=True, at=5))
+"""
+    rig = Rig(tmp_path, main)
+
+    assert rig.run() == ["[True, True]", "[True, False]", "True"]
+    assert [frame.data[0] for frame in rig.station.received] == [1, 3, 2, 5]
+
+
+def test_filters_keep_a_buffer_free_for_what_must_not_be_lost(tmp_path):
+    main = """
+can.accept(0, 0x7FF, (0,), False)
+can.accept(1, 0x1FFFFC00, (0x1000, 0x2000), True)
+can.begin(500_000)
+time.sleep_ms(20)
+print(can.overflowed())
+while can.receive(): print(hex(can.identifier), can.extended, can.data[0])
+"""
+    rig = Rig(tmp_path, main)
+    sent = [Frame(0x1003, b"\x01", True), Frame(0x2003, b"\x02", True), Frame(0x3003, b"\x03", True), Frame(0, b"\x04")]
+    rig.bench.clock.at(BOOT_US + 5_000, lambda: [rig.station.send(frame) for frame in sent])
+
+    assert rig.run() == ["True", "0x0 False 4", "0x1003 True 1"]
+
+
+def test_a_chip_that_gives_up_tries_once_and_says_whether_anybody_heard(tmp_path):
+    main = """
+data = bytearray(8)
+can.send(0x100, data, 0), can.send(0x101, data, 0)
+time.sleep_us(500)
+can.give_up()
+time.sleep_ms(2)
+can.count_errors()
+before = can.transmit_errors
+print(can.has_sent(), can.send(0x102, data, 0))
+time.sleep_ms(10)
+can.count_errors()
+print(can.has_sent(), can.transmit_errors - before)
+time.sleep_ms(20)
+can.persist()
+print(can.send(0x103, data, 0))
+time.sleep_ms(2)
+print(can.has_sent(), can.has_sent())
+"""
+    rig = Rig(tmp_path, main)
+    rig.wire.leave(rig.station)
+    rig.bench.clock.at(BOOT_US + 25_000, lambda: rig.wire.join(rig.station))
+
+    assert rig.run() == ["False True", "False 8", "True", "True False"]
+    assert rig.station.received == [Frame(0x103)]
 
 
 def test_an_extended_identifier_goes_out_and_comes_in(tmp_path):

@@ -1,8 +1,11 @@
 """MCP2515, CAN controller on SPI (Microchip DS20001801J). Nothing here allocates memory once it has begun.
 
 Frames leave in the order in which they were handed over: of equal priority the chip sends the highest buffer first, so
-the three are filled downwards and begun anew when all are empty. Frames are received in the order of their arrival as
-long as `receive` is called until it says no.
+two are filled downwards and begun anew when both are empty. The third, the highest, is left to urgent frames, which
+overtake them. Frames are received in the order of their arrival as long as `receive` is called until it says no.
+
+With `accept` the chip lets few frames pass: each of its two receive buffers has a mask and filters of its own, so that
+frames of one kind cannot take the place of another.
 
     can = Mcp2515(spi, Pin(17, Pin.OUT, value=1), 8_000_000)
     can.begin(500_000)
@@ -13,18 +16,23 @@ long as `receive` is called until it says no.
 
 RESET, WRITE, READ, BIT_MODIFY, READ_STATUS = 0xC0, 0x02, 0x03, 0x05, 0xA0
 LOAD_TX, RTS, READ_RX = 0x40, 0x80, 0x90
-CANSTAT, CANCTRL, TEC, CNF3, EFLG, RXB0CTRL, RXB1CTRL = 0x0E, 0x0F, 0x1C, 0x28, 0x2D, 0x60, 0x70
+CANSTAT, CANCTRL, TEC, CNF3, CANINTF, EFLG, RXB0CTRL, RXB1CTRL = 0x0E, 0x0F, 0x1C, 0x28, 0x2C, 0x2D, 0x60, 0x70
+MASKS, FILTERS = (0x20, 0x24), ((0x00, 0x04), (0x08, 0x10, 0x14, 0x18))  # of both receive buffers
 CONFIGURATION, NORMAL, OPMOD = 0x80, 0x00, 0xE0
+ABORT, ONE_SHOT = 0x10, 0x08  # in CANCTRL
 RECEIVED = 0x03  # CANINTE, CANINTF, READ STATUS: a frame in either buffer
-REQUESTED = 0x54  # READ STATUS: frames that wait to be sent
-ANY_MESSAGE, ROLL_OVER = 0x60, 0x04
+PENDING = 0x14  # READ STATUS: frames that wait to be sent in the lower two buffers
+URGENT_PENDING = 0x40  # and in the highest
+SENT = 0xA8  # and frames that have been
+SENT_FLAGS = 0x1C  # the same in CANINTF
+ANY_MESSAGE, FILTERED, ROLL_OVER = 0x60, 0x00, 0x04
 OVERFLOWS = 0xC0  # EFLG
 EXTENDED, REMOTE_STANDARD, REMOTE_EXTENDED = 0x08, 0x10, 0x40
 # A bit of 8 quanta: 1, propagation 2, first segment 3, second 2; sampled at 75 %. CNF2 is BTLMODE and the middle two.
 QUANTA, SEGMENTS, SECOND = 8, 0x91, 0x01
 LOOKS = 20
 HEADER = 6  # bytes of a transfer before the data: instruction, identifier, length
-BUFFERS = 3
+URGENT = 2  # the buffer that goes first
 
 STOPPED, ACTIVE, WARNING, PASSIVE, BUS_OFF = 0, 1, 2, 3, 4
 
@@ -50,11 +58,18 @@ class Mcp2515:
         self._four = bytearray(4)
         self._six = bytearray(6)
         self._frame = bytearray(HEADER + 8)
-        self._next = BUFFERS - 1  # the buffer to fill next, -1 until all are empty
+        self._rows = []  # where a mask or a filter goes, its identifier, and whether that is an extended one
+        self._next = URGENT - 1  # the buffer to fill next, -1 until both are empty
         self._second_is_older = False
 
+    def accept(self, buffer: int, mask: int, identifiers, extended: bool) -> None:
+        """Have a receive buffer take these identifiers alone, compared under a mask; counts from the next `begin` on."""
+        self._rows.append((MASKS[buffer], mask, extended))
+        for i in range(len(FILTERS[buffer])):
+            self._rows.append((FILTERS[buffer][i], identifiers[min(i, len(identifiers) - 1)], extended))
+
     def begin(self, bitrate_hz: int) -> None:
-        """Reset the chip and go onto the bus; any frame is received. ValueError: not a rate of this crystal."""
+        """Reset the chip and go onto the bus. ValueError: not a rate of this crystal."""
         scale = self._crystal_hz // (2 * QUANTA * bitrate_hz)
         if not 1 <= scale <= 64 or scale * 2 * QUANTA * bitrate_hz != self._crystal_hz:
             raise ValueError(f"bit rate {bitrate_hz} Hz, with a crystal of {self._crystal_hz} Hz")
@@ -68,14 +83,27 @@ class Mcp2515:
         self._wait(CONFIGURATION, 19, "ENODEV")
         for i in range(4):
             self._write(CNF3 + i, self._settings[i])
-        self._write(RXB0CTRL, ANY_MESSAGE | ROLL_OVER)
-        self._write(RXB1CTRL, ANY_MESSAGE)
+        for register, identifier, extended in self._rows:
+            self._identify(self._six, 2, identifier, extended)
+            self._six[0], self._six[1] = WRITE, register
+            self._exchange(self._six)
+        self._write(RXB0CTRL, FILTERED if self._rows else ANY_MESSAGE | ROLL_OVER)
+        self._write(RXB1CTRL, FILTERED if self._rows else ANY_MESSAGE)
         self._write(CANCTRL, NORMAL)
         self._wait(NORMAL, 5, "EIO")
         if not self.configured():
             raise OSError(5, "EIO")
-        self._next = BUFFERS - 1
+        self._next = URGENT - 1
         self._second_is_older = False
+
+    def give_up(self) -> None:
+        """Take back what waits to be sent, and try each frame once only from now on, whether anybody hears it or not."""
+        self._write(CANCTRL, NORMAL | ONE_SHOT | ABORT)
+        self._write(CANCTRL, NORMAL | ONE_SHOT)
+
+    def persist(self) -> None:
+        """Try each frame again and again, as after `begin`."""
+        self._write(CANCTRL, NORMAL)
 
     def configured(self) -> bool:
         """Return whether the chip is on the bus with what `begin` set."""
@@ -107,26 +135,39 @@ class Mcp2515:
         self._exchange(four)
         return True
 
-    def send(self, identifier: int, data, length: int, extended: bool = False) -> bool:
-        """Hand over a frame of `length` bytes; return whether there was room for it."""
-        if not self._look() & REQUESTED:
-            self._next = BUFFERS - 1
-        elif self._next < 0:
+    def has_sent(self) -> bool:
+        """Return whether a frame was acknowledged since this was asked last."""
+        if not self._look() & SENT:
             return False
-        frame, buffer = self._frame, self._next
-        base = identifier >> 18 if extended else identifier
-        low = identifier & 0x3FFFF if extended else 0
+        four = self._four
+        four[0], four[1], four[2], four[3] = BIT_MODIFY, CANINTF, SENT_FLAGS, 0
+        self._exchange(four)
+        return True
+
+    def send(
+        self, identifier: int, data, length: int, extended: bool = False, urgent: bool = False, at: int = 0
+    ) -> bool:
+        """Hand over a frame of `length` bytes of `data`, from `at` on; return whether there was room for it."""
+        status = self._look()
+        if urgent:
+            if status & URGENT_PENDING:
+                return False
+            buffer = URGENT
+        else:
+            if not status & PENDING:
+                self._next = URGENT - 1
+            elif self._next < 0:
+                return False
+            buffer = self._next
+            self._next -= 1
+        frame = self._frame
         frame[0] = LOAD_TX | buffer << 1
-        frame[1] = base >> 3
-        frame[2] = (base << 5) & 0xE0 | (EXTENDED if extended else 0) | low >> 16
-        frame[3] = (low >> 8) & 0xFF
-        frame[4] = low & 0xFF
+        self._identify(frame, 1, identifier, extended)
         frame[5] = length
         for i in range(length):
-            frame[HEADER + i] = data[i]
+            frame[HEADER + i] = data[at + i]
         self._exchange(frame)
         self._tell(RTS | 1 << buffer)
-        self._next = buffer - 1
         return True
 
     def receive(self) -> bool:
@@ -151,6 +192,15 @@ class Mcp2515:
         self.length = min(8, frame[5] & 0x0F)
         for i in range(8):
             self.data[i] = frame[HEADER + i]
+
+    def _identify(self, buffer, at: int, identifier: int, extended: bool) -> None:
+        """Put an identifier into four bytes of a buffer, as the chip has it."""
+        base = identifier >> 18 if extended else identifier
+        low = identifier & 0x3FFFF if extended else 0
+        buffer[at] = base >> 3
+        buffer[at + 1] = (base << 5) & 0xE0 | (EXTENDED if extended else 0) | low >> 16
+        buffer[at + 2] = (low >> 8) & 0xFF
+        buffer[at + 3] = low & 0xFF
 
     def _look(self) -> int:
         self._status[0] = READ_STATUS
