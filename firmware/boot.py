@@ -4,9 +4,10 @@ The coil supply is opened and the heartbeat stays still, so the monostable shuts
 registers when only the processor was reset, and would go on driving: both are reset by the general call, told to be
 full off on every output, and read back. `LOUD` names the chip that answers but is not off, 0: there is none; a chip
 that does not answer is for the core to tell. The console finds the board in this state, too: it runs boot.py and not
-main.py when it resets the interpreter.
+main.py when it resets the interpreter. Ctrl-C cannot break in before all is off.
 """
 
+import micropython
 from machine import I2C, Pin
 
 AUTO_INCREMENT_ASLEEP, ALL_OFF = b"\x00\x30", b"\xfd\x10"  # PCA9685: MODE1, ALL_LED_OFF_H
@@ -58,4 +59,5 @@ def quiet() -> int:
     return 0
 
 
+micropython.kbd_intr(-1)  # until main.py: MicroPython heeds Ctrl-C anew in each file that it runs (its pyexec.c)
 LOUD = quiet()

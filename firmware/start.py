@@ -4,7 +4,11 @@ The boot record says which slot, kept twice with a CRC as firmware/store.py keep
 (CONFIRMED: the program has been healthy once), the slot to fall back to, and the service mark. A new program loses one
 try at each start until it confirms itself; when none is left the board rolls back. The strap (GP22 to ground), the
 service mark, which counts once, and a new program that failed with nothing to fall back to leave the board to its
-console: outputs off, no watchdog. So does Ctrl-C there, after a reset, because nothing else stops the watchdog.
+console: outputs off, no watchdog. So does Ctrl-C there, after a reset, because nothing else stops the watchdog; and a
+KeyboardInterrupt that the program itself raises, when it was ordered to.
+
+The console can change everything, so on a robot with a pairing key it stays shut: Ctrl-C does nothing, and a program
+that fails is followed by a reset. Only the strap and the service mark, which takes an order with the key, open it.
 
 Only main.py knows the record, so that it cannot differ between two slots: the program is handed `settled`, to call
 once it has been healthy for a while. That is said on the console, by slot, so that a deployment hears of a roll-back.
@@ -25,6 +29,7 @@ SLOT, TRIES, FALLBACK, SERVICE = 0, 1, 2, 3
 CONFIRMED = NOWHERE = 255
 SEQUENCES = 1 << 30  # a flash is worn out long before
 STRAP = 22
+KEY = "/key"
 GARBAGE_BYTES = 8192  # collected so often while modules are compiled, their remains leave no holes in the heap
 START_MS = 8000  # to import the program, or to write the flash
 
@@ -88,8 +93,20 @@ def chosen(sequence: int, fields: bytearray) -> bool:
     return True
 
 
+def keyed() -> bool:
+    """Return whether there is a pairing key, whole or damaged."""
+    try:
+        with open(KEY, "rb"):
+            return True
+    except OSError:
+        return False
+
+
 def start() -> None:
     """Run the program of the chosen slot for ever."""
+    shut = keyed()
+    if shut:
+        micropython.kbd_intr(-1)
     sequence, fields = load()
     if Pin(STRAP, Pin.IN, Pin.PULL_UP).value() == 0 or not chosen(sequence, fields):
         print("softrig: service")
@@ -104,6 +121,11 @@ def start() -> None:
     except KeyboardInterrupt:
         micropython.kbd_intr(-1)
         change(SERVICE, 1)
+        reset()
+    except Exception as error:
+        if not shut:
+            raise
+        sys.print_exception(error)
         reset()
 
 

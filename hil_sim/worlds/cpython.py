@@ -7,7 +7,7 @@ the firmware and imports them again.
 from hil_sim.worlds.files import Files
 from hil_sim.worlds.machine import machine_module, time_module
 from hil_sim.worlds.modules import Modules, gc_module, micropython_module, sys_module
-from hil_sim.worlds.world import Life
+from hil_sim.worlds.world import CTRL_C, Life
 
 RUNS = ("boot.py", "main.py")
 
@@ -17,10 +17,11 @@ def execute(life: Life) -> None:
     given = {
         "machine": machine_module(life),
         "time": time_module(life),
-        "micropython": micropython_module(),
+        "micropython": micropython_module(life.heed),
         "gc": gc_module(),
         "sys": sys_module(life.say),
     }
     modules = Modules(life.image, given, life.say, Files(life).open)
     for path in RUNS:
+        life.heed(CTRL_C)
         modules.run(path)

@@ -86,6 +86,10 @@ class Desk:
         """Return what setting a pin and feeding the watchdog cost, which are not asked for their time."""
         return [PIN_US, WATCHDOG_US]
 
+    def heed(self, character: int) -> None:
+        """Let that character of the console raise KeyboardInterrupt; -1: none does."""
+        self._processor.heed(character)
+
     def paths(self) -> list[str]:
         """Return the paths of all files on the flash."""
         return self._processor.board.flash.paths()

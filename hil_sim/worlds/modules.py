@@ -120,8 +120,8 @@ class Modules:
             file.write(text)
 
 
-def micropython_module() -> ModuleType:
-    """Return `micropython`: declarations without effect, because the heap is not the board's."""
+def micropython_module(heed: Callable[[int], None] = lambda character: None) -> ModuleType:
+    """Return `micropython`: declarations without effect, because the heap is not the board's; and `kbd_intr`."""
     return _module_of(
         "micropython",
         const=lambda value: value,
@@ -130,7 +130,7 @@ def micropython_module() -> ModuleType:
         alloc_emergency_exception_buf=lambda size: None,
         heap_lock=lambda: 0,
         heap_unlock=lambda: 0,
-        kbd_intr=lambda character: None,
+        kbd_intr=heed,
         opt_level=lambda level=0: 0,
     )
 

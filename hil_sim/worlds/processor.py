@@ -25,5 +25,8 @@ class Processor(Protocol):
     def watch(self, timeout_us: int) -> None:
         """Reset the processor unless this is called again within `timeout_us`."""
 
+    def heed(self, character: int) -> None:
+        """Let that character of the console raise KeyboardInterrupt; -1: none does."""
+
     def ticks_us(self) -> int:
         """Return the time since reset."""

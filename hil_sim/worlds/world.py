@@ -20,6 +20,7 @@ from hil_sim.worlds.costs import BOOT_US
 from hil_sim.worlds.image import Image
 from hil_sim.worlds.machine import PWRON_RESET, WDT_RESET
 
+CTRL_C = 3
 _PROTESTS_MAX = 100
 
 
@@ -117,6 +118,7 @@ class Life:
         self._bite_at: Event | None = None
         self._bite_us = 0
         self._protests = 0
+        self._heeds = True  # Ctrl-C
         self._ended = False
 
     @property
@@ -148,9 +150,13 @@ class Life:
         self._resume_at = self.clock.at(self.clock.now_us, self._world.power_on)
         self._greenlet.parent.switch()
 
+    def heed(self, character: int) -> None:
+        """Let that character of the console raise KeyboardInterrupt; -1: none does."""
+        self._heeds = character == CTRL_C
+
     def interrupt(self) -> None:
-        """Raise the board's KeyboardInterrupt where the firmware is."""
-        if self.running:
+        """Raise the board's KeyboardInterrupt where the firmware is, unless it does not heed it."""
+        if self.running and self._heeds:
             self.pause()
             self._greenlet.parent = getcurrent()
             self._greenlet.throw(Interrupted)

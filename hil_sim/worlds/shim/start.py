@@ -9,8 +9,11 @@ import sys
 import time  # noqa: F401
 
 import machine  # noqa: F401  (found here, before the flash takes the place of this folder)
+import micropython
 import vfs
 from bench import CRASH, DESK, FILES, READ, line
+
+CTRL_C = 3
 
 
 class Bytes(io.IOBase):
@@ -105,6 +108,20 @@ def say(*values, sep=" ", end="\n", file=None) -> None:
         file.write(text)
 
 
+class Micropython:
+    """The module `micropython`, but that Ctrl-C is what is pressed on the bench."""
+
+    def __init__(self) -> None:
+        for name in dir(micropython):
+            setattr(self, name, getattr(micropython, name))
+        self.kbd_intr = heed
+
+
+def heed(character) -> None:
+    """Let that character of the console raise KeyboardInterrupt; -1: none does."""
+    line.call(DESK, "heed", (character,))
+
+
 def told(error) -> str:
     """Return an exception as the bench records it: itself in the first line, then where it came from."""
     trace = io.StringIO()
@@ -119,12 +136,14 @@ def run(name, space) -> None:
             text = file.read()
     except OSError:
         return
+    heed(CTRL_C)
     exec(compile(text, name, "exec"), space)
 
 
 def main() -> None:
     """Boot."""
     builtins.print = say
+    sys.modules["micropython"] = Micropython()
     vfs.umount("/")
     vfs.mount(Flash(), "/")
     sys.path[:] = ["", ".frozen", "/lib"]
