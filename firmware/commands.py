@@ -8,6 +8,7 @@ from firmware.channels import Refused
 from firmware.upload import Upload
 from protocol import codes, messages
 
+NOT, ON_SYNC = -1, -2
 FIGURE_MAX = 0x7FFFFFFF  # that the fields of a refusal hold
 
 
@@ -20,6 +21,7 @@ class Commands:
         self._arming = -1  # number of the order that waits for its self-test, -1: none
         self._calibrates = False  # that order; else it arms
         self._lease_ms = 0  # that it asked for
+        self._at = self._begins = NOT  # when a program does that was verified: the robot's clock, NOT or ON_SYNC
         self._orders = (
             (messages.ARM, self._arm), (messages.DISARM, self._disarm), (messages.CLEAR, self._clear),
             (messages.FIRE, self._fire), (messages.STATUS_REQUEST, self._status),
@@ -45,9 +47,17 @@ class Commands:
             self._tested()
         if self.upload.request >= 0:
             self._verify(self.upload.request)
+        if self._begins >= 0 and self._core.now_ms - self._begins >= 0:
+            self._begin()
+
+    def sync(self) -> None:
+        """Start the program that waits for this."""
+        if self._begins == ON_SYNC:
+            self._begin()
 
     def give_up(self, code: int) -> None:
-        """Refuse an order that waits for its self-test."""
+        """Refuse an order that waits for its self-test, and let no program begin that waits for its time."""
+        self._begins = NOT
         if self._arming >= 0:
             self._refuse(self._arming, Refused(code))
             self._arming = -1
@@ -57,6 +67,7 @@ class Commands:
         if self._arming >= 0:
             self._core.control.all_off(self._core.now_ms)
         self._arming = self.upload.request = -1
+        self._begins = NOT
 
     def _tested(self) -> None:
         """Arm or calibrate after a self-test in which every coil was whole, else refuse with its code."""
@@ -90,9 +101,14 @@ class Commands:
         except Refused as refused:
             self._refuse(request, refused)
         else:
-            self._core.start(self.upload.code)
             self.answer(messages.OK, request=request)
+            self._core.reports.event(messages.ACCEPTED)
+            self._begins = self._at
         self.upload.request = -1
+
+    def _begin(self) -> None:
+        self._begins = NOT
+        self._core.start(self.upload.code)
 
     def _understood(self, received) -> tuple:
         for message, handler in self._orders:
@@ -156,7 +172,7 @@ class Commands:
         core.channels.fire(order.coils, order.duty_permille, order.hold_ms, core.now_ms)
 
     def _subscribe(self, order, seq: int) -> None:
-        self._core.reports.period_ms = order.period_ms
+        self._core.reports.subscribe(order.slot, order.period_ms)
 
     def _status(self, order, seq: int) -> bool:
         core = self._core
@@ -186,6 +202,7 @@ class Commands:
         """Have the program verified; the answer follows when it is."""
         self._not_running()
         self._armed()
+        self._at = ON_SYNC if order.at_ms == messages.AT_SYNC else order.at_ms
         self.upload.verify(seq)
         return True
 
@@ -193,6 +210,9 @@ class Commands:
         """End the program, or do not start the one that is being verified."""
         if self._core.state == messages.RUNNING:
             self._core.end_program(messages.ABORTED)
+        elif self._begins != NOT:
+            self._begins = NOT
+            self._core.reports.event(messages.ABORTED)
         elif self.upload.request >= 0:
             self._refuse(self.upload.request, Refused(codes.CANCELLED))
             self.upload.request = -1
@@ -208,6 +228,8 @@ class Commands:
 
     def _not_running(self) -> None:
         if self._core.state == messages.RUNNING or self.upload.request >= 0 or self._arming >= 0:
+            raise Refused(codes.BUSY)
+        if self._begins != NOT:
             raise Refused(codes.BUSY)
 
     def _refuse(self, request: int, refused: Refused) -> None:

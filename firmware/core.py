@@ -14,7 +14,7 @@ from firmware.records import Records
 from firmware.reports import Reports
 from firmware.tasks import CONTROL, RECEIVE, Tasks
 from protocol import codes, messages
-from protocol.frames import UNSEEDED_BELOW, StopFinder
+from protocol.frames import GREETINGS_BELOW, StopFinder
 from protocol.link import Link
 
 VERSION = b"0.1.0"
@@ -44,11 +44,14 @@ class Core:
         self.attitude, self.player = self.control.attitude, self.control.player
         self.commands = Commands(self)
         self.greetings = Greetings(self)
-        self.link = Link(crc32(self.dictionary))
+        self.link = Link(crc32(self.dictionary), self.records.settings.node, True)
+        self.link.grant_bytes = board.credit_bytes
+        self.link.byte_ns = board.byte_ns
         self.reports = Reports(self)
         self.tasks = Tasks()
         self._stop = StopFinder()
         self._armed_ms = 0
+        self._attach = 0  # the session that the one on offer would take over from
 
     def step(self, now_ms: int, data: bytes, room: int) -> bytes:
         """Take the bytes that arrived, run one control step, and return the bytes to send: at most `room`."""
@@ -122,16 +125,20 @@ class Core:
         """Leave the running program: all coils off, still armed."""
         self.channels.all_off(self.now_ms)
         self.state = messages.ARMED
+        if event == messages.FINISHED:
+            self.reports.step_done()
         self.reports.event(event, code, 255, value)
         self.player.step = 0
 
-    def take_session(self, session: int) -> None:
-        """Give the link to a new session; it holds no lease, so that what the last one armed ends now."""
-        self.session = session
-        self.lease_ms = 0
-        self.commands.forget()
-        self.link.reset(self.link.decoder.seed)
-        self.reports.period_ms = 0
+    def offer(self, session: int, attach: int, key: bytes = b"") -> bool:
+        """Have a session begin with its first frame; return whether it may, as things stand."""
+        self._attach = attach
+        self.link.offer(session, key)
+        return session == self.session or self._may_adopt()
+
+    def holder(self) -> int:
+        """Return the session that holds the lease, or whose program runs; 0: none."""
+        return self.session if self.lease_left_ms() or self.state == messages.RUNNING else 0
 
     def at_rest(self) -> bool:
         """Return whether no coil is on and none can be: the time to write to the flash."""
@@ -172,11 +179,30 @@ class Core:
             coils = self.channels.on_mask
             self.trip(codes.STOP)
             self.greetings.stopped(coils)
-        for received in self.link.receive(data, self.now_ms):
-            if received.kind < UNSEEDED_BELOW:
+        self.link.may_adopt = self._may_adopt()
+        delivered = self.link.receive(data, self.now_ms)
+        if self.link.session != self.session:
+            self._take_session(self.link.session)
+        for received in delivered:
+            if received.kind < GREETINGS_BELOW:
                 self.greetings.serve(received)
+            elif received.kind == messages.CLOCK_REQUEST.number:
+                self.reports.clock(received.payload)
             else:
                 self.commands.serve(received)
+
+    def _may_adopt(self) -> bool:
+        """Return whether the session on offer may begin: nobody holds the lease, or it is handed over."""
+        return self.lease_left_ms() == 0 or self._attach == self.session
+
+    def _take_session(self, session: int) -> None:
+        """Follow the link to a new session: it has what it took over, or no lease, so that what was armed ends now."""
+        if self._attach != self.session:
+            self.lease_ms = 0
+        self._attach = 0
+        self.session = session
+        self.commands.forget()
+        self.reports.forget()
 
     def _end_lease(self) -> None:
         if not (self.state == messages.RUNNING and self.commands.upload.outlives_host):

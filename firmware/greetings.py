@@ -5,6 +5,7 @@ a line that echoes stays quiet.
 """
 
 from protocol import codes, frames, messages
+from protocol.flight import WINDOW
 
 PAGE = 200  # bytes of dictionary text in an answer
 
@@ -22,7 +23,9 @@ class Greetings:
                 self._hello(received.payload)
             elif received.kind == messages.DICTIONARY.number:
                 self._dictionary(messages.DICTIONARY.unpack(received.payload))
-            elif received.kind > messages.NAK.number:
+            elif received.kind == messages.SYNC.number:
+                self._core.commands.sync()
+            elif received.kind > messages.SYNC.number:
                 self._nak(received.kind, codes.UNKNOWN_MESSAGE)
         except ValueError:
             self._nak(received.kind, codes.BAD_PAYLOAD)
@@ -41,19 +44,21 @@ class Greetings:
             self._nak(messages.HELLO.number, codes.OTHER_VERSION)
             return
         hello = messages.HELLO.unpack(payload)
-        free = core.lease_left_ms() == 0 or hello.session == core.session
-        if free and hello.session != core.session:
-            core.take_session(hello.session)
+        free = core.offer(hello.session, hello.attach)
         identity = messages.IDENTITY.pack(
             session=hello.session, boot=core.boot, uptime_ms=core.now_ms & 0xFFFFFFFF,
-            dictionary_crc=core.link.decoder.seed, dictionary_bytes=len(core.dictionary), version=frames.VERSION,
-            state=core.state, role=messages.HOLDER if free else messages.VIEWER, firmware=core.version,
+            dictionary_crc=core.link.decoder.dictionary_crc, dictionary_bytes=len(core.dictionary),
+            version=frames.VERSION, state=core.state, role=messages.HOLDER if free else messages.VIEWER,
+            node=core.link.node, secured=0, slots=WINDOW, bytes=core.link.grant_bytes, byte_ns=core.link.byte_ns,
+            holder=core.holder(), step=core.player.step, nonce_a=0, nonce_b=0, proof_a=0, proof_b=0,
+            firmware=core.version,
         )  # fmt: skip
         core.link.post(messages.IDENTITY.number, identity)
 
     def _dictionary(self, asked) -> None:
-        page = self._core.dictionary[asked.offset : asked.offset + PAGE]
-        payload = messages.DICTIONARY_PAGE.pack(offset=asked.offset, text=page)
+        count = min(asked.count, PAGE)
+        page = self._core.dictionary[asked.offset : asked.offset + count] if asked.part == 0 else b""
+        payload = messages.DICTIONARY_PAGE.pack(part=asked.part, offset=asked.offset, text=page)
         self._core.link.post(messages.DICTIONARY_PAGE.number, payload)
 
     def _nak(self, kind: int, code: int) -> None:

@@ -5,6 +5,7 @@ import struct
 from protocol import codes, messages
 
 ROOM = 8  # places of the link's queue that events leave to answers
+STOPS_STEPS = (messages.ABORTED, messages.TRIP, messages.DISARMED)
 
 
 class Reports:
@@ -15,23 +16,42 @@ class Reports:
         self._core = core
         self._player, self._channels, self._attitude = core.player, core.channels, core.attitude
         self._due_ms = 0
+        self._count = 0
         self._step = 0
         self._records = bytearray(4 * core.channels.count)
 
-    def event(self, event: int, code: int = 0, channel: int = 255, value: int = 0) -> None:
+    def forget(self) -> None:
+        """End every subscription: nobody is left who asked for it."""
+        self.period_ms = 0
+
+    def clock(self, payload: bytes) -> None:
+        """Answer a question for the clock."""
+        now_ms = self._now()
+        try:
+            host_us = messages.CLOCK_REQUEST.unpack(payload).host_us
+        except ValueError:
+            return
+        told = messages.CLOCK.pack(host_us=host_us, received_ms=now_ms, sent_ms=now_ms)
+        self._core.link.post(messages.CLOCK.number, told)
+
+    def event(self, event: int, code: int = 0, channel: int = 255, value: int = 0, step: int = -1) -> None:
         """Tell the host what happened, unless it has stopped listening; what has a code is kept as well."""
         core = self._core
+        if event in STOPS_STEPS:
+            self._step = 0
         if code:
             core.records.note(self._now(), code, channel, value, core.was)
         if core.link.room() > ROOM:
             payload = messages.EVENT.pack(
-                event=event, code=code, step=core.player.step, channel=channel, value=value, now_ms=self._now()
-            )
+                event=event, code=code, step=core.player.step if step < 0 else step, channel=channel, value=value,
+                now_ms=self._now(),
+            )  # fmt: skip
             core.link.send(messages.EVENT.number, payload, core.now_ms)
 
     def tell(self) -> None:
         """Send what the control step left to tell: a step, coils cut off, a lost sensor, telemetry that is due."""
         if self._player.step != self._step:
+            self.step_done()
             self._step = self._player.step
             if self._step:
                 self.event(messages.STEP)
@@ -43,6 +63,12 @@ class Reports:
         if self.period_ms and self._core.now_ms - self._due_ms >= 0:
             self._due_ms = self._core.now_ms + self.period_ms
             self._core.link.post(messages.TELEMETRY.number, self._telemetry(self._core))
+
+    def step_done(self) -> None:
+        """Tell that the step told last has ended: all its ops have run, or the program has ended."""
+        if self._step:
+            self.event(messages.STEP_DONE, step=self._step)
+            self._step = 0
 
     def coils(self) -> bytes:
         """Return what the resistances say, as `coils` carries it."""
@@ -60,6 +86,10 @@ class Reports:
                 self.event(messages.CUT_OFF, 0, channel, core.sense.temperature_millidegc[channel] // 100)
         core.channels.cut_off_mask = 0
 
+    def subscribe(self, slot: int, period_ms: int) -> None:
+        """Send telemetry at that period; 0 ends it."""
+        self.period_ms = period_ms
+
     def _telemetry(self, core) -> bytes:
         records = self._records
         for channel in range(core.channels.count):
@@ -69,12 +99,13 @@ class Reports:
             records[4 * channel + 1] = duty >> 8
             records[4 * channel + 2] = temperature & 0xFF
             records[4 * channel + 3] = temperature >> 8 & 0xFF
-        return messages.TELEMETRY.pack(
-            now_ms=self._now(), state=core.state, step=core.player.step, supply_mv=core.sense.supply_mv,
-            current_ma=core.sense.current_ma, board_decidegc=core.sense.board_decidegc,
-            roll_decideg=core.attitude.roll_decideg(), pitch_decideg=core.attitude.pitch_decideg(),
-            down=core.attitude.down_channel(), channels=records,
+        values = struct.pack(
+            "<BHHHhhhB", core.state, core.player.step, core.sense.supply_mv, core.sense.current_ma,
+            core.sense.board_decidegc, core.attitude.roll_decideg(), core.attitude.pitch_decideg(),
+            core.attitude.down_channel(),
         )  # fmt: skip
+        self._count = (self._count + 1) & 255
+        return messages.TELEMETRY.pack(slot=0, count=self._count, now_ms=self._now(), values=values + bytes(records))
 
     def _now(self) -> int:
         return self._core.now_ms & 0xFFFFFFFF

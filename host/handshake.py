@@ -14,6 +14,7 @@ from protocol import frames, messages
 
 ASK_MS = 250  # a question without an answer is asked again after this long
 GIVE_UP_MS = 3000  # without any progress
+PAGE = 200  # bytes of the dictionary in an answer
 PAGES_AHEAD = 4
 READINGS = 3  # of a dictionary that does not fit its checksum
 
@@ -72,9 +73,8 @@ class Handshake:
 
     def _question(self, place: int) -> Question:
         if place < 0:
-            payload = messages.HELLO.pack(version=frames.VERSION, session=self._session)
-            return messages.HELLO.number, payload
-        return messages.DICTIONARY.number, messages.DICTIONARY.pack(offset=place)
+            return messages.HELLO.number, hello(self._session)
+        return messages.DICTIONARY.number, messages.DICTIONARY.pack(part=messages.DEFINITIONS, offset=place, count=PAGE)
 
     def _identify(self, identity: Any, now_ms: int) -> None:
         if self.identity is not None or identity.session != self._session:
@@ -110,6 +110,12 @@ class Handshake:
     def _denied(self, nak: Any) -> None:
         if nak.version != frames.VERSION:
             self.trouble = _other_version(nak.version)
+
+
+def hello(session: int, attach: int = 0) -> bytes:
+    """Return the payload that opens a session, or asks whether it is still there."""
+    payload: bytes = messages.HELLO.pack(version=frames.VERSION, session=session, attach=attach, nonce_a=0, nonce_b=0)
+    return payload
 
 
 def differing_lines(dictionary: bytes) -> list[str]:

@@ -82,20 +82,22 @@ Record = Telemetry | Event | Stopped
 def telemetry_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Telemetry:
     """Return the record of that payload; ValueError when it is none."""
     row = messages.TELEMETRY.unpack(payload)
-    if len(row.channels) % 4:
-        raise ValueError(f"telemetry: {len(row.channels)} bytes of channels, must be a multiple of 4")
-    words = struct.unpack(f"<{'Hh' * (len(row.channels) // 4)}", row.channels)
+    try:
+        numbers = struct.unpack(f"<BHHHhhhB{'Hh' * len(labels)}", row.values)
+    except struct.error as error:
+        raise ValueError(f"telemetry: {error}") from None
+    state, step, supply_mv, current_ma, board_decidegc, roll_decideg, pitch_decideg, down = numbers[:8]
     return Telemetry(
         host_ms,
         row.now_ms,
-        state_name(row.state),
-        row.step,
-        row.supply_mv,
-        row.current_ma,
-        row.board_decidegc / 10,
-        words[0::2],
-        tuple([decidegc / 10 for decidegc in words[1::2]]),
-        **_attitude(row, labels),
+        state_name(state),
+        step,
+        supply_mv,
+        current_ma,
+        board_decidegc / 10,
+        numbers[8::2],
+        tuple([decidegc / 10 for decidegc in numbers[9::2]]),
+        **_attitude(roll_decideg, pitch_decideg, down, labels),
     )
 
 
@@ -128,19 +130,15 @@ def status_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Status:
         board_degc=row.board_decidegc / 10,
         dropped=row.dropped,
         overruns=row.overruns,
-        **_attitude(row, labels),
+        **_attitude(row.roll_decideg, row.pitch_decideg, row.down, labels),
     )
 
 
-def _attitude(row: Any, labels: tuple[str, ...]) -> dict[str, Any]:
+def _attitude(roll_decideg: int, pitch_decideg: int, down: int, labels: tuple[str, ...]) -> dict[str, Any]:
     """Return how the robot lies, or nothing where it does not know."""
-    if row.down == program.NO_COIL:
+    if down == program.NO_COIL:
         return {}
-    return {
-        "roll_deg": row.roll_decideg / 10,
-        "pitch_deg": row.pitch_decideg / 10,
-        "down": coil_name(row.down, labels),
-    }
+    return {"roll_deg": roll_decideg / 10, "pitch_deg": pitch_decideg / 10, "down": coil_name(down, labels)}
 
 
 def state_name(state: int) -> str:

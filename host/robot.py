@@ -200,7 +200,7 @@ class Robot:
 
     def subscribe(self, period_ms: int) -> None:
         """Have telemetry sent at that period; 0 ends it."""
-        self._order(messages.SUBSCRIBE, period_ms=period_ms)
+        self._order(messages.SUBSCRIBE, slot=0, period_ms=period_ms, on_change=0, variables=b"")
 
     def upload(self, header: bytes, code: bytes, progress: Callable[[int], None] | None = None) -> None:
         """Send a compiled program; `progress` is told how many bytes have been taken."""
@@ -215,7 +215,7 @@ class Robot:
 
     def start(self) -> None:
         """Run the program that was uploaded."""
-        self._order(messages.START)
+        self._order(messages.START, at_ms=messages.AT_ONCE)
 
     def cancel(self) -> None:
         """End the running program; all coils off, still armed."""

@@ -24,7 +24,7 @@ from host.errors import (
     Silent,
     SoftrigError,
 )
-from host.handshake import Handshake, differing_lines, profile_text
+from host.handshake import ASK_MS, Handshake, differing_lines, hello, profile_text
 from host.kept import FaultPage, Settings, faults_of, settings_of
 from host.profile import Profile, read_profile
 from host.records import (
@@ -44,8 +44,8 @@ from protocol import codes, frames, messages
 from protocol.link import Link
 
 KEEPALIVE_MS = 100
+NEVER_MS = 1 << 31
 STOP_AGAIN_MS = 100
-TICK_MS = 20  # while something waits to be acknowledged
 IDLE_TICK_MS = 250
 LATE_MS = 500  # between the making of a frame and its arrival on a line that is read
 SLACK_MS = 50  # between a question and the time told in its answer, should the clocks be read unluckily
@@ -80,6 +80,7 @@ class Session:
         self._trouble: SoftrigError | None = None
         self._asked: dict[int, Asked] = {}
         self._greeted_ms: int | None = None  # the first hello to an open session that is not answered
+        self._told_ms: int | None = None  # when telemetry came last
         self._event_ms: int | None = None  # the robot's clock in its last event
         self._stopping = False
         self._stop_due_ms = 0
@@ -142,7 +143,7 @@ class Session:
         if not self.open:
             out += b"" if self._stopping else self._ask(now_ms)
         elif not self.viewer:
-            if self.holds_lease and now_ms - self._written_ms >= KEEPALIVE_MS:
+            if now_ms - self._written_ms >= self._keepalive_ms():
                 self._link.acknowledge()
             out += self._link.poll(now_ms)
         if out:
@@ -152,14 +153,19 @@ class Session:
 
     def wake_ms(self, now_ms: int) -> int:
         """Return when `poll` must be called again at the latest, if nothing arrives before."""
-        due = [now_ms + (IDLE_TICK_MS if self._link.idle() else TICK_MS)]
+        resend_ms = self._link.due_ms(now_ms) if self.open else None
+        due = [now_ms + IDLE_TICK_MS if resend_ms is None else resend_ms]
         if self._stopping:
             due.append(self._stop_due_ms)
         elif not self.open:
             due.append(self._handshake.due_ms())
-        if self.holds_lease:
-            due.append(self._written_ms + KEEPALIVE_MS)
+        if self.open and not self.viewer:
+            due.append(self._written_ms + self._keepalive_ms())
         return max(min(due), now_ms + 1)
+
+    def _keepalive_ms(self) -> int:
+        """Return how often the robot must hear something: all the time if it is armed, else until it answers."""
+        return KEEPALIVE_MS if self.holds_lease else ASK_MS if self._link.heard_ms is None else NEVER_MS
 
     def robot_ms(self, now_ms: int) -> int | None:
         """Return the robot's clock at the host's `now_ms`, or None before the robot has told it."""
@@ -190,6 +196,7 @@ class Session:
         labels = self.profile.labels if self.profile else ()
         if kind == messages.TELEMETRY.number:
             self.last = telemetry_of(payload, labels, now_ms)
+            self._told_ms = now_ms
             self._compare(self.last.now_ms, self._expected_ms(self._read_ms, LATE_MS), self.last.state, now_ms)
             return self.last
         if kind == messages.EVENT.number:
@@ -199,7 +206,7 @@ class Session:
             stopped = stopped_of(payload, labels, now_ms)
             self._compare(stopped.now_ms, self._expected_ms(self._read_ms, LATE_MS), stopped.state, now_ms)
             return stopped
-        if kind < frames.UNSEEDED_BELOW:
+        if kind < frames.GREETINGS_BELOW:
             self._introduce(kind, payload, now_ms)
         else:
             self._answered(kind, payload, labels, now_ms)
@@ -285,7 +292,10 @@ class Session:
             self._trouble = mismatch
             return
         self._damaged_before = self._link.decoder.dropped
-        self._link.reset(self.identity.dictionary_crc)
+        self._link.begin(self.identity.dictionary_crc, self.number)
+        self._link.granted(self.identity.slots, self.identity.bytes)
+        self._link.byte_ns = self.identity.byte_ns
+        self._link.acknowledge()  # the robot takes the session up with its first frame
 
     def _ask(self, now_ms: int) -> bytes:
         try:
@@ -315,9 +325,10 @@ class Session:
 
     def _silent_ms(self) -> int:
         """Return for how long no intact frame of this session had come, answer or telemetry, that should have."""
-        if self._link.heard_ms is None:
+        heard = [time_ms for time_ms in (self._link.heard_ms, self._told_ms) if time_ms is not None]
+        if not heard:
             return self._unanswered_ms()
-        quiet_ms = self._read_ms - self._link.heard_ms
+        quiet_ms = self._read_ms - max(heard)
         missing_ms = quiet_ms - max(0, 2 * self._period_ms - PROBE_MS) if self._period_ms else 0
         return max(missing_ms, min(quiet_ms, self._unanswered_ms()))
 
@@ -329,7 +340,7 @@ class Session:
         """Ask the robot who it is: one that was reset cannot say anything else to us."""
         self._probed_ms = now_ms
         self._greeted_ms = now_ms if self._greeted_ms is None else self._greeted_ms
-        self._link.post(messages.HELLO.number, messages.HELLO.pack(version=frames.VERSION, session=self.number))
+        self._link.post(messages.HELLO.number, hello(self.number))
 
     def _stop_bytes(self, now_ms: int) -> bytes:
         if not self._stopping or now_ms < self._stop_due_ms:
@@ -339,7 +350,7 @@ class Session:
 
     def _expected_ms(self, now_ms: int, late_ms: int) -> int | None:
         """Return the earliest robot time that a frame made after the host's `now_ms` may carry."""
-        robot_ms = self.clock.at(now_ms)
+        robot_ms = self.clock.earliest(now_ms)
         return None if robot_ms is None else robot_ms - late_ms
 
     def _compare(self, robot_ms: int, earliest_ms: int | None, state: str, now_ms: int) -> None:

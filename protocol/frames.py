@@ -1,45 +1,67 @@
 """Frames on the wire: COBS between zero bytes, sealed with a seeded CRC-32.
 
-A body is `version|flags u8, kind u8, seq u8, ack u8, payload, crc32 u32` and at most 253 bytes long, so that COBS
-costs exactly one byte and the frame ends with the only zero in it. The CRC starts from `seed`, the CRC-32 of the
-robot's dictionary: a host with other definitions cannot make a frame that this robot takes. Kinds below 0x10 are
-sealed with seed 0, so that two strangers can always say hello.
+A body is `version|flags u8, kind u8, seq u8, ack u8, [node u8], payload, [tag], crc32 u32` and at most 253 bytes long,
+so that COBS costs exactly one byte and the frame ends with the only zero in it. Where the CRC starts from says who can
+make the frame: anybody a greeting (kinds below 0x10: 0), whoever knows the robot's dictionary an open frame (0x50 to
+0x5F: its CRC-32), and only the two ends of a session any other. So a host with other definitions cannot move a coil,
+and what was meant for another session is no frame in this one.
 
-    line = encode(seal(0x14, 3, 7, payload, seed, RELIABLE))
-    frames = Decoder(seed).feed(line)
+    line = encode(seal(0x14, 3, 7, payload, session_seed(dictionary_crc, session), RELIABLE))
+    frames = Decoder(dictionary_crc, session).feed(line)
 """
 
 from binascii import crc32
 from collections import namedtuple
 
-VERSION = 1
+VERSION = 2
 RELIABLE = 1  # flag: acknowledged, resent when lost, delivered once and in order
+NODE = 2  # flag: the number of the robot on a shared line follows the head
+SEALED = 4  # flag: a tag that only holders of the pairing key can make stands before the CRC
+RESERVED = 8  # flag: never set
+HEAD_BYTES = 4
+TAG_BYTES = 8
+CRC_BYTES = 4
+BODY_MIN = HEAD_BYTES + CRC_BYTES
 BODY_MAX = 253
-PAYLOAD_MAX = BODY_MAX - 8
-UNSEEDED_BELOW = 0x10
+PAYLOAD_MAX = BODY_MAX - BODY_MIN - 1 - TAG_BYTES  # so that any payload leaves room for node and tag
+STUFFING = 2  # bytes that COBS and the delimiter add to a body
+FRAME_MAX = BODY_MAX + STUFFING
+GREETINGS_BELOW = 0x10
+OPEN_FROM, OPEN_BELOW = 0x50, 0x60
 STOP = b"\x00STOP\x00"  # four bytes between delimiters: shorter than any frame, so no valid frame holds it
 
-Frame = namedtuple("Frame", ("flags", "kind", "seq", "ack", "payload"))
+Frame = namedtuple(
+    "Frame", ("flags", "kind", "seq", "ack", "node", "payload", "body", "offered")
+)  # body: up to the CRC
 
 
-def seal(kind: int, seq: int, ack: int, payload: bytes, seed: int, flags: int) -> bytes:
+def is_open(kind: int) -> bool:
+    """Return whether frames of this kind belong to no session: whoever has the dictionary may read them."""
+    return OPEN_FROM <= kind < OPEN_BELOW
+
+
+def session_seed(dictionary_crc: int, session: int) -> int:
+    """Return what the CRC of a session's frames starts from."""
+    return crc32(session.to_bytes(4, "little"), dictionary_crc)
+
+
+def head(kind: int, seq: int, ack: int, flags: int, node: int = 0) -> bytes:
+    """Return the first bytes of a body; a `node` sets its flag."""
+    if node:
+        return bytes((VERSION << 4 | flags | NODE, kind, seq, ack, node))
+    return bytes((VERSION << 4 | flags, kind, seq, ack))
+
+
+def seal(kind: int, seq: int, ack: int, payload: bytes, seed: int, flags: int, node: int = 0) -> bytes:
     """Return the body with its check; ValueError when the payload is longer than PAYLOAD_MAX."""
     if len(payload) > PAYLOAD_MAX:
         raise ValueError(f"payload {len(payload)} bytes, at most {PAYLOAD_MAX}")
-    body = bytes((VERSION << 4 | flags, kind, seq, ack)) + payload
-    return body + crc32(body, _seed_of(kind, seed)).to_bytes(4, "little")
+    return close(head(kind, seq, ack, flags, node) + payload, seed)
 
 
-def unseal(body: bytes, seed: int) -> Frame | None:
-    """Return the frame of `body`, or None when it is damaged or foreign.
-
-    A frame of another version is foreign too, unless it is unseeded: a hello of any version must be answered.
-    """
-    if not 8 <= len(body) <= BODY_MAX or (body[0] >> 4 != VERSION and body[1] >= UNSEEDED_BELOW):
-        return None
-    if crc32(body[:-4], _seed_of(body[1], seed)) != int.from_bytes(body[-4:], "little"):
-        return None
-    return Frame(body[0] & 15, body[1], body[2], body[3], body[4:-4])
+def close(body: bytes, seed: int) -> bytes:
+    """Return a body, complete but for its CRC, with that; a greeting is sealed with 0 whatever the seed."""
+    return body + crc32(body, 0 if body[1] < GREETINGS_BELOW else seed).to_bytes(4, "little")
 
 
 def encode(body: bytes) -> bytes:
@@ -64,15 +86,25 @@ def decode(stuffed: bytes) -> bytes | None:
 class Decoder:
     """Collects received bytes and yields the whole, intact frames among them.
 
-    Noise on a line is weather, not a bug: a damaged frame is counted in `dropped` and skipped. Nothing that arrives
-    can raise, and never more than one frame is kept.
+    Noise on a line is weather, not a bug: a damaged or foreign frame is counted in `dropped` and skipped. Nothing that
+    arrives can raise, and never more than one frame is kept. Beside the session in force it knows one that is offered.
     """
 
-    def __init__(self, seed: int = 0) -> None:
-        self.seed = seed
+    def __init__(self, dictionary_crc: int = 0, session: int = 0) -> None:
         self.dropped = 0
         self._tail = b""
         self._skipping = False
+        self.tune(dictionary_crc, session)
+
+    def tune(self, dictionary_crc: int, session: int) -> None:
+        """Take the frames of this robot and session from now on."""
+        self.dictionary_crc = dictionary_crc
+        self.seed = session_seed(dictionary_crc, session)
+        self._offered_seed = None
+
+    def offer(self, session: int) -> None:
+        """Take the frames of that session too, and mark them."""
+        self._offered_seed = session_seed(self.dictionary_crc, session)
 
     def feed(self, data: bytes) -> list[Frame]:
         """Take received bytes; return the list of frames they completed."""
@@ -91,12 +123,44 @@ class Decoder:
         return frames
 
     def _take(self, chunk: bytes, frames: list) -> None:
-        body = decode(chunk) if len(chunk) <= BODY_MAX + 1 else None
-        frame = unseal(body, self.seed) if body is not None else None
+        body = decode(chunk) if BODY_MIN < len(chunk) <= BODY_MAX + 1 else None
+        frame = self._unseal(body) if body is not None else None
         if frame is None:
             self.dropped += 1
         else:
             frames.append(frame)
+
+    def _unseal(self, body: bytes) -> Frame | None:
+        """Return the frame of `body`, or None when it is damaged or foreign.
+
+        A frame of another version is foreign too, unless it is a greeting: a hello of any version must be answered.
+        """
+        kind, flags = body[1], body[0] & 15
+        greeting = kind < GREETINGS_BELOW
+        if (body[0] >> 4 != VERSION or flags & RESERVED) and not greeting:
+            return None
+        covered, told = body[:-4], int.from_bytes(body[-4:], "little")
+        seed = 0 if greeting else self.dictionary_crc if OPEN_FROM <= kind < OPEN_BELOW else self.seed
+        offered = False
+        if crc32(covered, seed) != told:
+            offered = self._offered_seed is not None and seed == self.seed
+            if not offered or crc32(covered, self._offered_seed) != told:
+                return None
+        return frame_of(covered, offered)
+
+
+def frame_of(body: bytes, offered: bool = False) -> Frame | None:
+    """Return the fields of a body without its CRC, or None when it is shorter than its flags say."""
+    flags, begin, end = body[0] & 15, HEAD_BYTES, len(body)
+    node = 0
+    if flags & NODE:
+        begin += 1
+        node = body[4] if end > HEAD_BYTES else 0
+    if flags & SEALED:
+        end -= TAG_BYTES
+    if end < begin:
+        return None
+    return Frame(flags, body[1], body[2], body[3], node, body[begin:end], body, offered)
 
 
 class StopFinder:
@@ -111,7 +175,3 @@ class StopFinder:
         found = STOP in window
         self._tail = window[-5:]
         return found
-
-
-def _seed_of(kind: int, seed: int) -> int:
-    return 0 if kind < UNSEEDED_BELOW else seed

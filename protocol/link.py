@@ -1,9 +1,11 @@
-"""A reliable session over a line that loses, repeats or damages bytes; the same file on both ends.
+"""A reliable session over a line that loses, repeats, reorders or damages bytes; the same file on both ends.
 
-Reliable frames are numbered, acknowledged, resent and delivered once and in order. Posted frames (telemetry) are
-numbered too, so that the receiver can count what is missing, and never resent. The link opens no port and reads no
-clock: it is handed bytes and a time and hands back bytes.
+Reliable frames are numbered, acknowledged, resent one by one when they are missed, and delivered once and in order.
+Posted frames are numbered too, so that the receiver can count what is missing, and never resent. Both ends keep within
+the credit that the other gives. The link opens no port and reads no clock: it is handed bytes and a time and hands back
+bytes.
 
+    link.begin(dictionary_crc, session)
     link.send(FIRE.number, payload, now_ms)
     port.write(link.poll(now_ms))
     for received in link.receive(port.read(), now_ms): ...
@@ -11,16 +13,14 @@ clock: it is handed bytes and a time and hands back bytes.
 
 from collections import namedtuple
 
-from protocol import frames
+from protocol import frames, secret
+from protocol.flight import BYTES_ANY, WINDOW, Flight
 from protocol.messages import ALIVE
 
-WINDOW = 8  # frames on the way at once
 QUEUE_MAX = 64
-FRAME_MAX = frames.BODY_MAX + 2  # on the wire, stuffed and delimited
-TRIES_MAX = 12
-RTO_FIRST_MS = 250
-RTO_MIN_MS = 100  # a full window of long frames takes that long at 115200 baud
-RTO_MAX_MS = 400  # so that a line that loses half of all exchanges is not taken for a dead one
+RESERVE = 8  # places of the queue that are kept for answers to what the other end was allowed to send
+ALIVE_BYTES = 5
+LAPS = 4  # of its 256 numbers that a posted frame may be ahead when all before it were lost
 
 Received = namedtuple("Received", ("kind", "seq", "payload"))
 
@@ -29,60 +29,84 @@ class LinkFull(RuntimeError):
     """Too many frames wait to be sent."""
 
 
-class Waiting:
-    """A reliable frame that its receiver has not acknowledged."""
-
-    def __init__(self, kind: int, seq: int, payload: bytes) -> None:
-        self.kind = kind
-        self.seq = seq
-        self.payload = payload
-        self.sent_ms = 0
-        self.tries = 0
-
-
 class Link:
-    """One end of the line. `seed` is the CRC of the dictionary that both ends must share."""
+    """One end of the line. `node` is the robot's number on a shared line, 0: the line is not shared."""
 
-    def __init__(self, seed: int = 0) -> None:
-        self.decoder = frames.Decoder(seed)
-        self.reset(seed)
+    def __init__(self, dictionary_crc: int = 0, node: int = 0, device: bool = False) -> None:
+        self.decoder = frames.Decoder(dictionary_crc)
+        self.node = node
+        self.byte_ns = 0  # of a byte on the line; 0: not known
+        self.grant_bytes = BYTES_ANY  # that this end takes unacknowledged
+        self.may_adopt = False  # the session that is offered, at its first frame
+        self.forged = 0  # frames whose tag was wrong, or missing
+        self.foreign = 0  # intact frames of a session that is not in force
+        self._device = device
+        self._addressed = node != 0 and not device
+        self.begin(dictionary_crc, 0)
 
-    def reset(self, seed: int) -> None:
-        """Forget the session: numbers start at 0, nothing waits, counters stay with the decoder."""
-        self.decoder.seed = seed
-        self.heard_ms = None  # time of the last intact seeded frame
-        self.resent = 0
+    def begin(self, dictionary_crc: int, session: int, key: bytes = b"") -> None:
+        """Begin a session: numbers start at 0, nothing waits. With a `key` every frame of it carries a tag."""
+        self.decoder.tune(dictionary_crc, session)
+        self.session = session
+        self.key = key
+        self.heard_ms = None  # time of the last frame of the session
         self.duplicates = 0
         self.missed = 0
-        self.broken = False  # a frame was sent TRIES_MAX times in vain; it is still sent again
-        self.rtt_ms = None
-        self._spread_ms = 0
-        self._rto_ms = RTO_FIRST_MS
-        self._next_send = 0
+        self.flight = Flight()
+        self._offered = None
+        self._next_send = 0  # numbers count on beyond 255; frames carry their last byte
         self._next_post = 0
+        self._next_open = 0
         self._next_receive = 0
-        self._next_posted = None
+        self._next_posted = 0
+        self._next_telemetry = None
         self._ahead = []
-        self._waiting = []
         self._posts = []
         self._ack_due = False
+        self._told_slots = WINDOW
+
+    def offer(self, session: int, key: bytes = b"") -> None:
+        """Be ready for a session that may follow: its first frame begins it, when `may_adopt` then."""
+        if session == self.session:
+            return
+        self._offered = (session, key)
+        self.decoder.offer(session)
+
+    def granted(self, slots: int, octets: int) -> None:
+        """Keep within so many frames and bytes that are not acknowledged; later the other end says so itself."""
+        self.flight.grant(slots, octets)
+
+    @property
+    def resent(self) -> int:
+        """Return how many frames of this session were sent again."""
+        return self.flight.resent
+
+    @property
+    def rtt_ms(self) -> int | None:
+        """Return the round trip, smoothed, or None before the first."""
+        return self.flight.rtt_ms
+
+    @property
+    def broken(self) -> bool:
+        """Return whether a frame was sent many times in vain; it is still sent again."""
+        return self.flight.broken
 
     def room(self) -> int:
         """Return how many more frames `send` takes now."""
-        return QUEUE_MAX - len(self._waiting)
+        return QUEUE_MAX - len(self.flight.waiting)
 
     def idle(self) -> bool:
         """Return whether all that was sent is acknowledged."""
-        return not self._waiting
+        return not self.flight.waiting
 
     def send(self, kind: int, payload: bytes, now_ms: int) -> int:
         """Queue a reliable frame and return its sequence number; LinkFull when QUEUE_MAX frames wait."""
         if self.room() <= 0:
             raise LinkFull(f"{QUEUE_MAX} frames wait for an acknowledgement")
-        seq = self._next_send
-        self._next_send = (seq + 1) & 255
-        self._waiting.append(Waiting(kind, seq, payload))
-        return seq
+        number = self._next_send
+        self._next_send = number + 1
+        self.flight.add(kind, number, payload, self._size(len(payload)))
+        return number & 255
 
     def post(self, kind: int, payload: bytes, first: bool = False) -> None:
         """Queue a frame that is not resent, before all others if need be; the oldest gives way when too many wait."""
@@ -91,103 +115,194 @@ class Link:
         self._posts.insert(0 if first else len(self._posts), (kind, payload))
 
     def acknowledge(self) -> None:
-        """Have the next `poll` write at least an `alive`."""
+        """Have the next `poll` write an `alive`, whatever else it writes."""
         self._ack_due = True
 
     def receive(self, data: bytes, now_ms: int) -> list[Received]:
         """Take received bytes; return what they deliver, in order, each reliable frame exactly once."""
         delivered = []
         for frame in self.decoder.feed(data):
-            if frame.kind < frames.UNSEEDED_BELOW:
-                delivered.append(Received(frame.kind, frame.seq, frame.payload))
+            if not self._is_ours(frame):
                 continue
-            self.heard_ms = now_ms
-            self._acknowledged(frame.ack, now_ms)
-            if frame.flags & frames.RELIABLE:
-                self._take_reliable(frame, delivered)
-            elif frame.kind != ALIVE.number:
-                self._take_posted(frame, delivered)
+            if frame.kind < frames.GREETINGS_BELOW:
+                delivered.append(Received(frame.kind, frame.seq, frame.payload))
+            elif frames.is_open(frame.kind):
+                self._take_open(frame, delivered)
+            elif frame.offered:
+                self._take_offered(frame, now_ms, delivered)
+            else:
+                self._take(frame, now_ms, delivered)
         return delivered
 
     def poll(self, now_ms: int, room: int = 65_536) -> bytes:
         """Return the bytes to write now: new frames, frames that are due again, an acknowledgement if one is owed.
 
-        No frame is begun that might not fit into `room` bytes; what is left comes with a later call.
+        No frame is begun that does not fit into `room` bytes; what is left comes with a later call.
         """
-        if not (self._waiting or self._posts or self._ack_due):
+        if self._told_slots == 0 and self._slots():
+            self._ack_due = True
+        flight = self.flight
+        if not (flight.waiting or self._posts or self._ack_due):
             return b""
         out = []
-        for waiting in self._waiting[:WINDOW]:
-            if room >= FRAME_MAX and self._due(waiting, now_ms):
-                out.append(self._sealed(waiting, now_ms))
-                room -= len(out[-1])
-        while self._posts and room >= FRAME_MAX:
+        while self._posts and room >= self._size(len(self._posts[0][1])):
             out.append(self._posted())
             room -= len(out[-1])
-        if self._ack_due and room >= FRAME_MAX:
-            out.append(self._line(ALIVE.number, 0, b"", 0))
+        for waiting in flight.due(now_ms) if flight.waiting else ():
+            if room < waiting.size:
+                break
+            flight.sent(waiting, now_ms, self.byte_ns)
+            out.append(self._line(waiting.kind, waiting.number, waiting.payload, frames.RELIABLE))
+            room -= len(out[-1])
+        if self._ack_due and room >= self._size(ALIVE_BYTES):
+            out.append(self._alive())
         return b"".join(out)
 
-    def _posted(self) -> bytes:
-        kind, payload = self._posts.pop(0)
-        line = self._line(kind, self._next_post, payload, 0)
-        self._next_post = (self._next_post + (kind >= frames.UNSEEDED_BELOW)) & 255
-        return line
+    def due_ms(self, now_ms: int) -> int | None:
+        """Return when `poll` has something to write, at the latest; None: nothing waits."""
+        if self._posts or self._ack_due:
+            return now_ms
+        return self.flight.due_ms(now_ms)
 
-    def _take_reliable(self, frame, delivered: list) -> None:
+    def _is_ours(self, frame) -> bool:
+        """Return whether a frame is for, or from, the robot of this line; a robot answers as it is spoken to."""
+        named = frame.flags & frames.NODE != 0
+        if not self._device:
+            return frame.node == self.node
+        if named and frame.node != self.node:
+            return False
+        self._addressed = named
+        return True
+
+    def _take(self, frame, now_ms: int, delivered: list) -> None:
+        """Take a frame of the session, unless its tag is wrong."""
+        number = self._number(frame)
+        if self.key:
+            number = self._true_number(frame, number)
+            if number < 0:
+                self.forged += 1
+                return
+        self.heard_ms = now_ms
+        if frame.kind == ALIVE.number:
+            self._take_alive(frame, number, now_ms)
+            return
+        self.flight.acknowledged(frame.ack, 0, now_ms)
+        if frame.flags & frames.RELIABLE:
+            self._take_reliable(frame, number, delivered)
+        else:
+            self._next_posted = number + 1
+            delivered.append(Received(frame.kind, frame.seq, frame.payload))
+
+    def _take_offered(self, frame, now_ms: int, delivered: list) -> None:
+        """Begin the session that was offered, if this frame is a true one of it and the time is right."""
+        session, key = self._offered
+        if key and not self._is_true(frame, frame.seq, key):
+            self.forged += 1
+        elif not self.may_adopt:
+            self.foreign += 1
+        else:
+            while delivered:
+                delivered.pop()  # what the last session said a moment ago is nobody's order any more
+            self.begin(self.decoder.dictionary_crc, session, key)
+            self._ack_due = True
+            self._take(frame, now_ms, delivered)
+
+    def _take_alive(self, frame, number: int, now_ms: int) -> None:
+        self._next_posted = number + 1
+        try:
+            alive = ALIVE.unpack(frame.payload)
+        except ValueError:
+            self.decoder.dropped += 1
+            return
+        self.flight.grant(alive.slots, alive.bytes)
+        self.flight.acknowledged(frame.ack, alive.have, now_ms)
+
+    def _take_reliable(self, frame, number: int, delivered: list) -> None:
         self._ack_due = True
-        distance = (frame.seq - self._next_receive) & 255
-        known = [ahead.seq for ahead in self._ahead]
-        if distance >= WINDOW or frame.seq in known:
+        if not 0 <= number - self._next_receive < WINDOW or number in [ahead[0] for ahead in self._ahead]:
             self.duplicates += 1
             return
-        self._ahead.append(frame)
+        self._ahead.append((number, frame))
         while True:
-            due = [ahead for ahead in self._ahead if ahead.seq == self._next_receive]
+            due = [ahead for ahead in self._ahead if ahead[0] == self._next_receive]
             if not due:
                 return
             self._ahead.remove(due[0])
-            delivered.append(Received(due[0].kind, due[0].seq, due[0].payload))
-            self._next_receive = (self._next_receive + 1) & 255
+            frame = due[0][1]
+            delivered.append(Received(frame.kind, frame.seq, frame.payload))
+            self._next_receive += 1
 
-    def _take_posted(self, frame, delivered: list) -> None:
-        if self._next_posted is not None:
-            gap = (frame.seq - self._next_posted) & 255
+    def _take_open(self, frame, delivered: list) -> None:
+        if self._next_telemetry is not None:
+            gap = (frame.seq - self._next_telemetry) & 255
             self.missed += gap if gap < 128 else 0
-        self._next_posted = (frame.seq + 1) & 255
+        self._next_telemetry = (frame.seq + 1) & 255
         delivered.append(Received(frame.kind, frame.seq, frame.payload))
 
-    def _acknowledged(self, ack: int, now_ms: int) -> None:
-        while self._waiting and 0 < (ack - self._waiting[0].seq) & 255 <= WINDOW and self._waiting[0].tries:
-            waiting = self._waiting.pop(0)
-            if waiting.tries == 1:
-                self._measure(now_ms - waiting.sent_ms)
+    def _number(self, frame) -> int:
+        """Return the number that the last byte of it, which the frame carries, stands for.
 
-    def _measure(self, rtt_ms: int) -> None:
-        """Adapt the resend time-out to the round trip (Jacobson 1988; resent frames are not measured, Karn 1987)."""
-        if self.rtt_ms is None:
-            self.rtt_ms, self._spread_ms = rtt_ms, rtt_ms // 2
-        else:
-            self._spread_ms += (abs(rtt_ms - self.rtt_ms) - self._spread_ms) // 4
-            self.rtt_ms += (rtt_ms - self.rtt_ms) // 8
-        self._rto_ms = min(max(self.rtt_ms + 4 * self._spread_ms, RTO_MIN_MS), RTO_MAX_MS)
+        A reliable frame may be a little older than what is due; a posted one is taken for newer than the last.
+        """
+        if frame.flags & frames.RELIABLE:
+            return self._next_receive + ((frame.seq - self._next_receive + 128) & 255) - 128
+        return self._next_posted + ((frame.seq - self._next_posted) & 255)
 
-    def _due(self, waiting: Waiting, now_ms: int) -> bool:
-        if waiting.tries == 0:
-            return True
-        backed_off = min(self._rto_ms << min(waiting.tries - 1, 5), RTO_MAX_MS)
-        if now_ms - waiting.sent_ms < backed_off:
+    def _true_number(self, frame, number: int) -> int:
+        """Return the number that the frame's tag was made with, or -1: it is forged, or was heard before."""
+        for lap in range(1 if frame.flags & frames.RELIABLE else LAPS):
+            if self._is_true(frame, number + 256 * lap, self.key):
+                return number + 256 * lap
+        return -1
+
+    def _is_true(self, frame, number: int, key: bytes) -> bool:
+        if not frame.flags & frames.SEALED or number < 0:
             return False
-        self.broken = self.broken or waiting.tries >= TRIES_MAX
-        return True
+        body = frame.body[: -frames.TAG_BYTES]
+        return secret.same(frame.body[-frames.TAG_BYTES :], secret.tag(key, not self._device, number, body))
 
-    def _sealed(self, waiting: Waiting, now_ms: int) -> bytes:
-        self.resent += waiting.tries > 0
-        waiting.tries += 1
-        waiting.sent_ms = now_ms
-        return self._line(waiting.kind, waiting.seq, waiting.payload, frames.RELIABLE)
+    def _posted(self) -> bytes:
+        kind, payload = self._posts.pop(0)
+        if kind < frames.GREETINGS_BELOW:
+            return self._line(kind, 0, payload, 0)
+        if frames.is_open(kind):
+            number, self._next_open = self._next_open, self._next_open + 1
+        else:
+            number, self._next_post = self._next_post, self._next_post + 1
+        return self._line(kind, number, payload, 0)
 
-    def _line(self, kind: int, seq: int, payload: bytes, flags: int) -> bytes:
-        if kind >= frames.UNSEEDED_BELOW:
-            self._ack_due = False  # this frame carries it
-        return frames.encode(frames.seal(kind, seq, self._next_receive, payload, self.decoder.seed, flags))
+    def _alive(self) -> bytes:
+        """Return the frame that says what has arrived and how much more may come."""
+        have = 0
+        for number, _ in self._ahead:
+            have |= 1 << (number - self._next_receive - 1)
+        self._ack_due = False
+        self._told_slots = self._slots()
+        number, self._next_post = self._next_post, self._next_post + 1
+        payload = ALIVE.pack(have=have, slots=self._told_slots, bytes=self.grant_bytes)
+        return self._line(ALIVE.number, number, payload, 0)
+
+    def _slots(self) -> int:
+        """Return for how many more frames there would be room to answer."""
+        return max(0, min(WINDOW, self.room() - RESERVE))
+
+    def _line(self, kind: int, number: int, payload: bytes, flags: int) -> bytes:
+        """Return a frame as it goes on the wire; one of the session carries the acknowledgement."""
+        node = self.node if self._addressed else 0
+        if kind < frames.GREETINGS_BELOW:
+            return frames.encode(frames.seal(kind, 0, 0, payload, 0, 0, node))
+        if frames.is_open(kind):
+            return frames.encode(frames.seal(kind, number & 255, 0, payload, self.decoder.dictionary_crc, flags, node))
+        if not self._ahead and self._told_slots == self._slots():
+            self._ack_due = False  # this frame carries all there is to say
+        ack = self._next_receive & 255
+        if not self.key:
+            return frames.encode(frames.seal(kind, number & 255, ack, payload, self.decoder.seed, flags, node))
+        body = frames.head(kind, number & 255, ack, flags | frames.SEALED, node) + payload
+        body += secret.tag(self.key, self._device, number, body)
+        return frames.encode(frames.close(body, self.decoder.seed))
+
+    def _size(self, payload_bytes: int) -> int:
+        """Return how long the frame of a payload is on the wire, at most."""
+        extra = 1 if self._addressed else 0
+        return payload_bytes + frames.BODY_MIN + frames.STUFFING + extra + (frames.TAG_BYTES if self.key else 0)

@@ -25,10 +25,20 @@ _OutOfRange = getattr(struct, "error", ValueError)  # MicroPython has no struct.
 STATES = ("boot", "idle", "armed", "running", "tripped")
 BOOT, IDLE, ARMED, RUNNING, TRIPPED = 0, 1, 2, 3, 4
 
-EVENTS = ("", "started", "step", "finished", "aborted", "tripped", "disarmed", "cleared", "cut-off", "lost", "defaults")
+EVENTS = (
+    "", "started", "step", "finished", "aborted", "tripped", "disarmed", "cleared", "cut-off", "lost", "defaults",
+    "accepted", "step done",
+)  # fmt: skip
 STARTED, STEP, FINISHED, ABORTED, TRIP, DISARMED, CLEARED, CUT_OFF, LOST, DEFAULTED = 1, 2, 3, 4, 5, 6, 7, 8, 9, 10
+ACCEPTED, STEP_DONE = 11, 12
 
+ROLES = ("viewer", "holder")
 VIEWER, HOLDER = 0, 1
+
+PARTS = ("definitions", "help")  # of the dictionary
+DEFINITIONS, HELP = 0, 1
+
+AT_ONCE, AT_SYNC = 0, 0xFFFFFFFF  # when a program starts, beside a time
 
 CAUSES = ("", "power-on", "", "reset")  # of a start of the firmware
 POWER_ON, RESET = 1, 3
@@ -101,31 +111,48 @@ HELLO = Message(
     0x01, "hello",  # Opens a session; the answer is `identity`. Never disturbs a program that is running.
     Field("version", "B"),  # Protocol version of the host.
     Field("session", "I"),  # Number the host chose for this session.
+    Field("attach", "I"),  # The session whose lease and program are to be taken over, 0: none.
+    Field("nonce_a", "I"),  # The host's part of the session key, and
+    Field("nonce_b", "I"),  # its other half.
 )  # fmt: skip
 IDENTITY = Message(
     0x02, "identity",  # Who the robot is; answers `hello`.
     Field("session", "I"),  # The session that said hello.
     Field("boot", "I"),  # Number of this start of the firmware; a reset may draw the same again, see uptime_ms.
     Field("uptime_ms", "I"),  # Time since this start: less than the host expects after a reset.
-    Field("dictionary_crc", "I"),  # CRC-32 of the dictionary text: the seed of all other frames.
+    Field("dictionary_crc", "I"),  # CRC-32 of the dictionary text: the seed of open frames.
     Field("dictionary_bytes", "H"),  # Length of the dictionary text.
     Field("version", "B"),  # Protocol version of the robot.
-    Field("state", "B"),  # State of the robot, see STATES.
-    Field("role", "B"),  # 1: this session may arm; 0: another session holds the lease.
+    Field("state", "B"),  # State of the robot. [STATES]
+    Field("role", "B"),  # What this session may do: only the holder may give orders. [ROLES]
+    Field("node", "B"),  # The robot's number on a shared line, 0: none.
+    Field("secured", "B"),  # 1: orders must carry the tag of the pairing key. [0..1]
+    Field("slots", "B"),  # Credit to begin with: frames that may wait for their acknowledgement. [0..16]
+    Field("bytes", "H"),  # Credit to begin with: bytes of them on the line.
+    Field("byte_ns", "I"),  # Time of a byte on the line, 0: not known.
+    Field("holder", "I"),  # The session that holds the lease, or whose program runs, 0: none.
+    Field("step", "H"),  # Step of the program, 0: none.
+    Field("nonce_a", "I"),  # The robot's part of the session key, and
+    Field("nonce_b", "I"),  # its other half.
+    Field("proof_a", "I"),  # Shows a host that has the pairing key that the robot has it too, 0: not secured, and
+    Field("proof_b", "I"),  # its other half.
     Field("firmware", "s"),  # Version of the firmware, text.
 )  # fmt: skip
 DICTIONARY = Message(
     0x03, "dictionary",  # Asks for a page of the dictionary text.
+    Field("part", "B"),  # Which text. [PARTS]
     Field("offset", "H"),  # First byte wanted.
+    Field("count", "B"),  # How many bytes at most.
 )  # fmt: skip
 DICTIONARY_PAGE = Message(
     0x04, "dictionary_page",  # A page of the dictionary text.
+    Field("part", "B"),  # Which text. [PARTS]
     Field("offset", "H"),  # First byte of this page.
     Field("text", "s"),  # The page; empty beyond the end.
 )  # fmt: skip
 STOPPED = Message(
     0x05, "stopped",  # Answers the stop pattern once every coil is off.
-    Field("state", "B"),  # State of the robot, see STATES.
+    Field("state", "B"),  # State of the robot. [STATES]
     Field("code", "H"),  # Why it is stopped, see the table of codes.
     Field("coils", "I"),  # Coils that were on when the stop arrived.
     Field("now_ms", "I"),  # The robot's clock.
@@ -136,8 +163,14 @@ NAK = Message(
     Field("code", "H"),  # Why, see the table of codes.
     Field("version", "B"),  # Protocol version of the robot.
 )  # fmt: skip
+SYNC = Message(0x07, "sync")  # To all robots that wait for it: start your program now. Never answered.
 
-ALIVE = Message(0x10, "alive")  # Says only that the sender lives; carries its acknowledgement and renews the lease.
+ALIVE = Message(
+    0x10, "alive",  # Acknowledges in full, gives credit, and renews the lease like any frame of the session.
+    Field("have", "H"),  # Bit i: the frame i + 1 after the next expected one has arrived.
+    Field("slots", "B"),  # How many frames, from the next expected one on, may be on the way. [0..16]
+    Field("bytes", "H"),  # How many bytes of them.
+)  # fmt: skip
 ARM = Message(
     0x11, "arm",  # Takes the lease and allows orders until it runs out, once the self-test of every coil has passed.
     Field("session", "I"),  # The session that asks, as in its `hello`.
@@ -154,8 +187,11 @@ FIRE = Message(
 )  # fmt: skip
 STATUS_REQUEST = Message(0x15, "status_request")  # Asks for `status`.
 SUBSCRIBE = Message(
-    0x16, "subscribe",  # Sets how often the robot sends `telemetry`.
-    Field("period_ms", "H"),  # Between two records; 0 ends it.
+    0x16, "subscribe",  # Has the robot send some of its variables as `telemetry`.
+    Field("slot", "B"),  # Which of the subscriptions. [0..3]
+    Field("period_ms", "H"),  # Between two records, at the least; 0 ends it.
+    Field("on_change", "B"),  # 1: only when a value has changed. [0..1]
+    Field("variables", "s"),  # Numbers of the variables, u8 each, in the order of the record.
 )  # fmt: skip
 FAULTS_REQUEST = Message(
     0x17, "faults_request",  # Asks for `faults`.
@@ -175,6 +211,11 @@ CALIBRATE = Message(
     Field("session", "I"),  # The session that asks, as in its `hello`.
     Field("without", "I"),  # Bit mask of coils known to be broken: not tested, and what was kept of them stands.
 )  # fmt: skip
+SERVICE = Message(0x1D, "service")  # Restarts the robot in service mode; refused unless every coil is at rest.
+CLOCK_REQUEST = Message(
+    0x1E, "clock_request",  # Asks for `clock`; posted.
+    Field("host_us", "I"),  # The host's clock, modulo 2**32.
+)  # fmt: skip
 PROGRAM = Message(
     0x20, "program",  # Begins the upload of a program.
     Field("header", "s"),  # The program's header, see program.py.
@@ -184,7 +225,10 @@ CODE = Message(
     Field("offset", "H"),  # Its first byte.
     Field("code", "s"),  # The piece.
 )  # fmt: skip
-START = Message(0x22, "start")  # Verifies the uploaded program and runs it.
+START = Message(
+    0x22, "start",  # Verifies the uploaded program and runs it.
+    Field("at_ms", "I"),  # When, by the robot's clock; 0: at once; 4294967295: at the next `sync`.
+)  # fmt: skip
 CANCEL = Message(0x23, "cancel")  # Ends the running program: all coils off, still armed.
 
 OK = Message(
@@ -202,7 +246,7 @@ REFUSED = Message(
 STATUS = Message(
     0x42, "status",  # Answers `status_request`.
     Field("request", "B"),  # Sequence number of the request.
-    Field("state", "B"),  # State of the robot, see STATES.
+    Field("state", "B"),  # State of the robot. [STATES]
     Field("code", "H"),  # Last fault, 0: none since boot.
     Field("uptime_ms", "I"),  # Time since boot.
     Field("lease_ms", "H"),  # What is left of the lease, 0: none.
@@ -239,34 +283,34 @@ COILS = Message(
     Field("channels", "s"),  # Per channel: resistance u16 [10 mohm; 0: not measured], martensite u16 [permille; 65535:
     # not known], temperature at least i16 and at most i16 [0.1 C; -32768 and 32767: no bound].
 )  # fmt: skip
-TELEMETRY = Message(
-    0x50, "telemetry",  # State of the robot, sent at the subscribed period and not repeated when lost.
-    Field("now_ms", "I"),  # The robot's clock.
-    Field("state", "B"),  # State of the robot, see STATES.
-    Field("step", "H"),  # Step of the program, 0: none.
-    Field("supply_mv", "H"),  # Supply voltage at the coils' rail.
-    Field("current_ma", "H"),  # Supply current.
-    Field("board_decidegc", "h"),  # Temperature of the board.
-    Field("roll_decideg", "h"),  # Lean to the right; 0 when the attitude is not known.
-    Field("pitch_decideg", "h"),  # Turn forward since upright, -180 to 180 deg; 0 when the attitude is not known.
-    Field("down", "B"),  # Channel of the coil whose direction is nearest to down; 255: the attitude is not known.
-    Field("channels", "s"),  # Per channel: duty u16 [permille], estimated temperature i16 [0.1 C].
-)  # fmt: skip
 EVENT = Message(
-    0x51, "event",  # Something happened; sent once and surely.
-    Field("event", "B"),  # What, see EVENTS.
+    0x4F, "event",  # Something happened; sent once and surely.
+    Field("event", "B"),  # What. [EVENTS]
     Field("code", "H"),  # Why, see the table of codes; 0: in order.
     Field("step", "H"),  # Step of the program, 0: none.
     Field("channel", "B"),  # The channel it is about, 255: none.
     Field("value", "i"),  # What was measured, in the unit of the code's limit.
     Field("now_ms", "I"),  # The robot's clock.
 )  # fmt: skip
+TELEMETRY = Message(
+    0x50, "telemetry",  # A record of a subscription, not repeated when lost.
+    Field("slot", "B"),  # Which of the subscriptions. [0..3]
+    Field("count", "B"),  # Number of the record, modulo 256; those that found no room on the line are counted too.
+    Field("now_ms", "I"),  # The robot's clock.
+    Field("values", "s"),  # The variables in the order of the subscription; one with a value per coil has all of them.
+)  # fmt: skip
+CLOCK = Message(
+    0x5E, "clock",  # Answers `clock_request`.
+    Field("host_us", "I"),  # As in the request.
+    Field("received_ms", "I"),  # The robot's clock when it found the request.
+    Field("sent_ms", "I"),  # The robot's clock when it made this answer.
+)  # fmt: skip
 
 MESSAGES = (
-    HELLO, IDENTITY, DICTIONARY, DICTIONARY_PAGE, STOPPED, NAK,
+    HELLO, IDENTITY, DICTIONARY, DICTIONARY_PAGE, STOPPED, NAK, SYNC,
     ALIVE, ARM, DISARM, CLEAR, FIRE, STATUS_REQUEST, SUBSCRIBE,
-    FAULTS_REQUEST, CLEAR_FAULTS, SETTINGS_REQUEST, SET, CALIBRATE, COILS_REQUEST, PROGRAM, CODE, START, CANCEL,
-    OK, REFUSED, STATUS, FAULTS, SETTINGS, COILS, TELEMETRY, EVENT,
+    FAULTS_REQUEST, CLEAR_FAULTS, SETTINGS_REQUEST, SET, CALIBRATE, COILS_REQUEST, SERVICE, CLOCK_REQUEST,
+    PROGRAM, CODE, START, CANCEL, OK, REFUSED, STATUS, FAULTS, SETTINGS, COILS, EVENT, TELEMETRY, CLOCK,
 )  # fmt: skip
 
 

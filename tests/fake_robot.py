@@ -27,7 +27,8 @@ class FakeRobot:
     def __init__(self, profile: bytes = PROFILE, dictionary: bytes | None = None) -> None:
         self.dictionary = dictionary or messages.dictionary(profile)
         self.seed = frames.crc32(self.dictionary)
-        self.link = Link(self.seed)
+        self.link = Link(self.seed, device=True)
+        self.link.may_adopt = True
         self.boot = 1
         self.now_ms = 0  # of the line
         self.started_ms = 0  # the line's time at which the robot's clock began
@@ -43,6 +44,7 @@ class FakeRobot:
         self.stops = 0
         self.duty = [0] * len(LABELS)
         self.period_ms = 0
+        self.count = 0  # of telemetry
         self.supply_mv = 2000
         self.attitude = {"roll_decideg": 0, "pitch_decideg": 0, "down": 255}
         self._until: dict[int, int] = {}
@@ -57,7 +59,10 @@ class FakeRobot:
             return b""
         if self._finder.feed(data):
             self._stopped(now_ms)
-        for received in self.link.receive(data, now_ms):
+        delivered = self.link.receive(data, now_ms)
+        if self.link.session != self.session:
+            self.session, self.period_ms = self.link.session, 0
+        for received in delivered:
             self._serve(received, now_ms)
         self._go_on(now_ms)
         return self.link.poll(now_ms)
@@ -77,7 +82,7 @@ class FakeRobot:
         self.boot = self.boot + 1 if boot is None else boot
         self.started_ms = self.now_ms
         self.session, self.state, self.period_ms = 0, messages.IDLE, 0
-        self.link.reset(self.seed)
+        self.link.begin(self.seed, 0)
 
     def _serve(self, received, now_ms: int) -> None:
         message = messages.by_number(received.kind)
@@ -86,8 +91,8 @@ class FakeRobot:
         if message is messages.HELLO:
             self._hello(order)
         elif message is messages.DICTIONARY:
-            page = self.dictionary[order.offset : order.offset + PAGE]
-            self._post(messages.DICTIONARY_PAGE, offset=order.offset, text=page)
+            page = self.dictionary[order.offset : order.offset + min(order.count, PAGE)]
+            self._post(messages.DICTIONARY_PAGE, part=order.part, offset=order.offset, text=page)
         elif message.name in self.refuse:
             code, channel, value, limit = self.refuse[message.name]
             self._send(
@@ -134,20 +139,21 @@ class FakeRobot:
     def telemetry(self, late_ms: int = 0) -> None:
         """Send telemetry, or what is that late."""
         words = [word for duty in self.duty for word in (duty, 250 + duty)]
-        self._post(
-            messages.TELEMETRY, now_ms=(self.uptime_ms - late_ms) & 0xFFFFFFFF, state=self.state, step=0,
-            supply_mv=self.supply_mv, current_ma=0, board_decidegc=231, **self.attitude,
-            channels=struct.pack(f"<{'Hh' * len(LABELS)}", *words),
+        values = struct.pack(
+            f"<BHHHhhhB{'Hh' * len(LABELS)}",
+            self.state, 0, self.supply_mv, 0, 231, *self.attitude.values(), *words,
         )  # fmt: skip
+        self.count = (self.count + 1) & 255
+        now_ms = (self.uptime_ms - late_ms) & 0xFFFFFFFF
+        self._post(messages.TELEMETRY, slot=0, count=self.count, now_ms=now_ms, values=values)
 
     def _hello(self, order) -> None:
-        if order.session != self.session:
-            self.session, self.period_ms = order.session, 0
-            self.link.reset(self.seed)
+        self.link.offer(order.session)
         self._post(
             messages.IDENTITY, session=order.session, boot=self.boot, uptime_ms=self.uptime_ms,
             dictionary_crc=self.seed, dictionary_bytes=len(self.dictionary), version=frames.VERSION,
-            state=self.state, role=self.role, firmware=b"softrig 0.1.0",
+            state=self.state, role=self.role, node=0, secured=0, slots=16, bytes=448, byte_ns=0, holder=0, step=0,
+            nonce_a=0, nonce_b=0, proof_a=0, proof_b=0, firmware=b"softrig 0.1.0",
         )  # fmt: skip
 
     def _status(self, seq: int, now_ms: int) -> None:

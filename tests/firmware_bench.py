@@ -9,7 +9,7 @@ from pathlib import Path
 
 from firmware.core import Core
 from firmware.profile import Profile
-from protocol import messages, program
+from protocol import frames, messages, program
 from protocol.link import Link
 
 PROFILE = Path(__file__).parent.parent / "firmware" / "robots" / "circular.json"
@@ -177,6 +177,8 @@ class Table:
         self.waited_us = 0
         self.sensor = Imu()
         self.powered = False
+        self.credit_bytes = 448
+        self.byte_ns = 86_805
         self.beats = 0
         self.closed = True
         self.decidegc = 250
@@ -229,10 +231,18 @@ class Rig:
         self.profile = Profile(profile.read_bytes())
         self.board.supply.mv = self.profile.supply.nominal_mv
         self.core = Core(self.board, self.profile, boot=1)
-        self.host = Link(self.core.link.decoder.seed)
+        self.host = Link()
         self.got = []
         self.now_ms = 0
-        self.say(messages.HELLO, version=1, session=SESSION)
+        self.hello()
+        self.run(10)
+
+    def hello(self, session: int = SESSION, attach: int = 0):
+        """Begin a session and return the answers to its hello."""
+        self.host.begin(self.core.link.decoder.dictionary_crc, session)
+        hello = messages.HELLO.pack(version=frames.VERSION, session=session, attach=attach, nonce_a=0, nonce_b=0)
+        self.host.post(messages.HELLO.number, hello)
+        return self.run(10, silent=True, line=self.host.poll(self.now_ms))
 
     def say(self, message, **fields):
         """Send one message and return the answers of the next steps: a list of (message name, fields)."""
@@ -291,4 +301,4 @@ def run_program(rig: Rig, code: bytes, flags: int = 0, robot_crc: int | None = N
     header = program.header(code, rig.profile.crc if robot_crc is None else robot_crc, flags)
     answers = rig.upload(code, header)
     rig.arm()
-    return answers + rig.say(messages.START)
+    return answers + rig.say(messages.START, at_ms=0)

@@ -201,17 +201,17 @@ def orders(profile):
     crc = profile.crc
     code = rolling() if profile.imu_address else script()
     return [
-        (0, messages.HELLO, {"version": 1, "session": SESSION}),
+        (0, messages.HELLO, {"version": 2, "session": SESSION, "attach": 0, "nonce_a": 0, "nonce_b": 0}),
         (20, messages.DICTIONARY, {"offset": 0}),
         (30, messages.FIRE, {"coils": 1, "duty_permille": 500, "hold_ms": 100}),
-        (40, messages.SUBSCRIBE, {"period_ms": 50}),
+        (40, messages.SUBSCRIBE, {"slot": 0, "period_ms": 50, "on_change": 0, "variables": b""}),
         (50, messages.ARM, {"session": SESSION, "lease_ms": 0, "without": 0b100}),
         (190, messages.FIRE, {"coils": 3, "duty_permille": 1001, "hold_ms": 100}),
         (195, messages.FIRE, {"coils": 3, "duty_permille": 321, "hold_ms": 100}),
         (260, messages.COILS_REQUEST, {}),
         (300, messages.PROGRAM, {"header": program.header(code, crc)}),
         (310, messages.CODE, {"offset": 0, "code": code}),
-        (320, messages.START, {}),
+        (320, messages.START, {"at_ms": 0}),
         (1900, messages.SETTINGS_REQUEST, {}),
         (1910, messages.SET, {"setting": messages.NODE, "channel": 255, "value": 3}),
         (1920, messages.FAULTS_REQUEST, {"skip": 0}),
@@ -222,7 +222,8 @@ def orders(profile):
 
 def session(core, profile):
     """Run the session, then stop; print all that happens."""
-    host = Link(core.link.decoder.seed)
+    host = Link()
+    host.begin(core.link.decoder.dictionary_crc, SESSION)
     plan = orders(profile)
     for now_ms in range(0, 4500, 5):
         line = b""

@@ -12,10 +12,11 @@ from zlib import crc32
 from hil_sim.link import SimLink
 from host.gait.compiler import compile_script
 from host.gait.script import load
+from host.handshake import hello
 from host.profile import Profile, read_profile
 from host.robot import ENDS, Robot
 from host.run import TELEMETRY_MS
-from protocol import frames, messages, program
+from protocol import messages, program
 from protocol.link import Link
 from tests.witness import profile_text
 
@@ -68,10 +69,10 @@ def speak_bare(link: SimLink, draw: Random, until_s: float) -> None:
     """Arm and fire in bare frames, as a stranger's client: what the robot answers is acknowledged and not believed."""
     text = profile_text(link.bench)
     profile, session = read_profile(text), draw.randrange(1, 1 << 32)
-    client = Link(crc32(messages.dictionary(text)))
-    client.post(messages.HELLO.number, messages.HELLO.pack(version=frames.VERSION, session=session))
+    client = Link()
+    client.begin(crc32(messages.dictionary(text)), session)
+    client.post(messages.HELLO.number, hello(session))
     _exchange(link, client, 0.1)
-    client.reset(client.decoder.seed)
     client.send(messages.ARM.number, messages.ARM.pack(session=session, lease_ms=0, without=0), _now_ms(link))
     while link.now_s() < until_s:
         coils, duty, hold_ms = _order(draw, profile)

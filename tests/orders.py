@@ -22,6 +22,17 @@ TEST_US = 2_000_000  # the longest that a self-test takes between such an order 
 PULSES_US = 20_000  # and all of it that one coil is on
 
 
+class Talk:
+    """One session, overheard: what its host says, and what the robot answers."""
+
+    def __init__(self, seed: int, session: int) -> None:
+        self.session = session
+        self.host, self.robot = Link(seed, device=True), Link(seed)
+        self.orders: list[tuple[Received, int]] = []  # before the robot has answered any
+        for link in (self.host, self.robot):
+            link.begin(seed, session)
+
+
 class Ledger:
     """The orders of one robot's hosts; `alive` lists (time, until when a coil may be on by the lease, from then on)."""
 
@@ -39,12 +50,11 @@ class Ledger:
         self._end_all(now_us)
         self._lease_us = 0.0
         self._outlives = False
-        self._session = 0
         self._armed_us = now_us
         self._upload = bytearray()
         self._may_outlive = self._doubtful = False
         self._stop = frames.StopFinder()
-        self._host, self._robot = Link(self._seed), Link(self._seed)
+        self._talk, self._next = Talk(self._seed, 0), None
         self._open: dict[int, tuple[messages.Message, Claim | None, object, int]] = {}  # and how many claims there were
 
     def heard(self, data: bytes, now_us: int) -> None:
@@ -52,28 +62,30 @@ class Ledger:
         if self._stop.feed(data):
             self._end_all(now_us)
         self._reads += 1
-        for received in self._host.receive(data, self._reads):
+        if self._next is not None:
+            self._next.orders += [(received, now_us) for received in self._next.host.receive(data, self._reads)]
+        for received in self._talk.host.receive(data, self._reads):
+            if received.kind == messages.HELLO.number:
+                self._greeted(received.payload)
             self._ordered(received, now_us)
-        if self._host.heard_ms == self._reads:
+        if self._reads in (self._talk.host.heard_ms, self._next and self._next.host.heard_ms):
             self._live(now_us)
 
     def told(self, data: bytes, now_us: int) -> None:
         """Take bytes that the firmware has sent."""
-        for received in self._robot.receive(data, 0):
+        for received in self._heeded(data):
             message = messages.by_number(received.kind)
             if message is None:
                 continue
             answer = message.unpack(received.payload)
-            if message is messages.IDENTITY:
-                self._greeted(answer)
-            elif message is messages.EVENT and answer.event in ENDED:
+            if message is messages.EVENT and answer.event in ENDED:
                 self._ended(answer.event, now_us)
             elif message in (messages.OK, messages.REFUSED) and answer.request in self._open:
                 self._answered(*self._open.pop(answer.request), message is messages.OK, now_us)
 
     def _ordered(self, received: Received, now_us: int) -> None:
         message = messages.by_number(received.kind)
-        if message is None or received.kind < frames.UNSEEDED_BELOW:
+        if message is None or received.kind < frames.GREETINGS_BELOW:
             return
         try:
             order = message.unpack(received.payload)
@@ -156,12 +168,27 @@ class Ledger:
         if event in (messages.TRIP, messages.DISARMED) and now_us - self._armed_us > 500_000:
             self._end_all(now_us)
 
-    def _greeted(self, identity: object) -> None:
-        if identity.role == messages.HOLDER and identity.session != self._session:
-            self._session = identity.session
-            self._host.reset(self._seed)
-            self._robot.reset(self._seed)
-            self._open.clear()
+    def _greeted(self, payload: bytes) -> None:
+        """Listen to a session that may follow, too; the robot shows by its first answer that it does."""
+        try:
+            session = messages.HELLO.unpack(payload).session
+        except ValueError:
+            return
+        if session not in (self._talk.session, self._next and self._next.session):
+            self._next = Talk(self._seed, session)
+
+    def _heeded(self, data: bytes) -> list[Received]:
+        """Return what the robot told those whom it heeds, which is another session from its first word to it on."""
+        told = self._talk.robot.receive(data, 0)
+        answers = [] if self._next is None else self._next.robot.receive(data, 0)
+        if self._next is None or self._next.robot.heard_ms is None:
+            return told
+        self._talk, self._next = self._next, None
+        self._open.clear()
+        for received, now_us in self._talk.orders:
+            self._ordered(received, now_us)
+            self._live(now_us)
+        return answers
 
     def _live(self, now_us: int) -> None:
         self.alive.append((now_us, inf if self._outlives else now_us + self._lease_us))

@@ -103,7 +103,7 @@ def enter(core, state):
         core.channels.fire(0b11, 300, 9000, core.now_ms)
     if state == "running":
         core.start(script())
-    core.link.reset(core.link.decoder.seed)  # a host has acknowledged what it was told
+    core.link.begin(core.link.decoder.dictionary_crc, 0)  # a host has acknowledged what it was told
     core.link.heard_ms = core.now_ms
 
 

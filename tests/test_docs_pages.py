@@ -27,10 +27,9 @@ def test_the_generated_pages_are_fresh(generate):
 
 
 def test_a_page_that_is_not_as_its_table_is_named(generate, tmp_path, monkeypatch, capsys):
-    (tmp_path / "templates").symlink_to(generate.DOCS / "templates")
-    monkeypatch.setattr(generate, "DOCS", tmp_path)
+    monkeypatch.setattr(generate, "ROOT", tmp_path)
     generate.main([])
-    (tmp_path / "codes.md").write_text("R04 is out of fashion\n")
+    (tmp_path / "docs" / "codes.md").write_text("R04 is out of fashion\n")
 
     status = generate.main(["--check"])
 
@@ -43,7 +42,7 @@ def test_the_example_on_the_protocol_page_is_a_hello(generate):
 
     (frame,) = generate.frames.Decoder().feed(bytes.fromhex(line))
 
-    assert generate.messages.HELLO.unpack(frame.payload) == (1, 0x12345678)
+    assert generate.messages.HELLO.unpack(frame.payload) == (2, 0x12345678, 0, 0, 0)
 
 
 def test_every_command_the_readme_names_exists():

@@ -17,7 +17,7 @@ def test_it_starts_idle_with_the_supply_off_and_says_who_it_is(rig):
     name, identity = rig.got[0]
 
     assert name == "identity"
-    assert identity.dictionary_crc == rig.core.link.decoder.seed
+    assert identity.dictionary_crc == rig.core.link.decoder.dictionary_crc
     assert (identity.state, identity.role) == (messages.IDLE, messages.HOLDER)
     assert not rig.board.powered
 
@@ -82,7 +82,7 @@ def test_a_second_session_may_look_but_not_take_over_while_the_lease_lives(rig):
     rig.arm()
     rig.fire(1)
 
-    (_, identity) = rig.say(messages.HELLO, version=1, session=78)[0]
+    (_, identity) = rig.hello(session=78)[0]
 
     assert identity.role == messages.VIEWER
     assert rig.board.chip.duty_permille[0] == 500

@@ -175,7 +175,7 @@ def test_an_order_or_a_second_arming_in_the_middle_is_refused_and_the_test_goes_
 def test_a_session_that_takes_over_in_the_middle_ends_the_test(rig):
     in_the_middle(rig)
 
-    rig.say(messages.HELLO, version=1, session=78)
+    rig.hello(session=78)
     rig.run(100)
 
     assert rig.core.state == messages.IDLE

@@ -35,14 +35,14 @@ def test_a_figure_greater_than_an_answer_can_carry_is_refused_all_the_same(rig):
 
 
 def test_a_hello_of_another_version_is_told_so_whatever_it_carries(rig):
-    """The frame says version 2 in its head, and its payload is longer than ours."""
-    body = bytes((0x20, messages.HELLO.number, 0, 0)) + bytes((2, 1, 2, 3, 4, 5, 6, 7))
+    """The frame says version 7 in its head, and its payload is shorter than ours."""
+    body = bytes((0x78, messages.HELLO.number, 0, 0)) + bytes((7, 1, 2, 3, 4, 5, 6, 7))
     answer = rig.core.step(rig.now_ms, encode(body + crc32(body).to_bytes(4, "little")), 1024)
 
     ((kind, _, payload),) = rig.host.receive(answer, 0)
 
     nak = messages.NAK.unpack(payload)
-    assert (kind, nak.code, nak.version) == (messages.NAK.number, codes.OTHER_VERSION, 1)
+    assert (kind, nak.code, nak.version) == (messages.NAK.number, codes.OTHER_VERSION, 2)
 
 
 def test_its_own_words_coming_back_are_not_answered(rig):
@@ -72,10 +72,10 @@ def test_a_host_that_acknowledges_nothing_goes_without_answers(rig):
 def test_telemetry_comes_at_its_period_with_every_channel(rig):
     rig.arm()
     rig.fire(1)
-    rig.say(messages.SUBSCRIBE, period_ms=50)
+    rig.say(messages.SUBSCRIBE, slot=0, period_ms=50, on_change=0, variables=b"")
 
     records = [body for name, body in rig.run(1000) if name == "telemetry"]
 
     assert len(records) in (19, 20)
-    assert len(records[0].channels) == 32
-    assert int.from_bytes(records[0].channels[:2], "little") == 500
+    assert len(records[0].values) == 14 + 32
+    assert int.from_bytes(records[0].values[14:16], "little") == 500

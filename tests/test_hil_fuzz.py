@@ -55,7 +55,7 @@ class Attacker:
 
     def _say(self, message, **fields) -> None:
         now_ms = round(self.line.now_s() * 1000)
-        if message.number < frames.UNSEEDED_BELOW:
+        if message.number < frames.GREETINGS_BELOW:
             self._link.post(message.number, message.pack(**fields))
         elif self._link.room():
             self._link.send(message.number, message.pack(**fields), now_ms)
@@ -63,9 +63,10 @@ class Attacker:
         self._write(self._sent[-1])
 
     def _anew(self) -> None:
-        self._link = Link(SEED)
+        self._link = Link()
         self._session = self.random.randrange(1 << 32)
-        self._say(messages.HELLO, version=frames.VERSION, session=self._session)
+        self._link.begin(SEED, self._session)
+        self._say(messages.HELLO, version=frames.VERSION, session=self._session, attach=0, nonce_a=0, nonce_b=0)
 
     def _noise(self) -> None:
         self._write(self.random.randbytes(self.random.randrange(600)))
@@ -81,25 +82,29 @@ class Attacker:
 
     def _hellos(self) -> None:
         for _ in range(self.random.randrange(30)):
-            version, session = self.random.choice((1, 1, 0, 255)), self.random.randrange(1 << 32)
-            self._seal(messages.HELLO.number, messages.HELLO.pack(version=version, session=session))
+            version, session = self.random.choice((2, 2, 1, 0, 255)), self.random.randrange(1 << 32)
+            attach = self.random.choice((0, self._session, self.random.randrange(1 << 32)))
+            hello = messages.HELLO.pack(version=version, session=session, attach=attach, nonce_a=0, nonce_b=0)
+            self._seal(messages.HELLO.number, hello)
 
     def _pages(self) -> None:
-        self._seal(messages.DICTIONARY.number, messages.DICTIONARY.pack(offset=self.random.randrange(1 << 16)))
+        part, offset, count = (self.random.randrange(1 << bits) for bits in (8, 16, 8))
+        self._seal(messages.DICTIONARY.number, messages.DICTIONARY.pack(part=part, offset=offset, count=count))
 
     def _sealed(self) -> None:
-        self._seal(self.random.randrange(256), self.random.randbytes(self.random.randrange(240)))
+        self._seal(self.random.randrange(256), self.random.randbytes(self.random.randrange(frames.PAYLOAD_MAX + 1)))
 
     def _seal(self, kind: int, payload: bytes) -> None:
         seq, ack, flags = (self.random.randrange(256) for _ in range(3))
-        seed = 0 if kind < frames.UNSEEDED_BELOW else SEED
-        self._write(frames.encode(frames.seal(kind, seq, ack, payload, seed, flags & frames.RELIABLE)))
+        seed = SEED if frames.is_open(kind) else frames.session_seed(SEED, self._session)
+        flags &= frames.RELIABLE | frames.SEALED
+        self._write(frames.encode(frames.seal(kind, seq, ack, payload, seed, flags)))
 
     def _pieces(self) -> None:
         offset, size = self.random.randrange(1 << 16), self.random.randrange(200)
         self._say(messages.PROGRAM, header=program.header(bytes(self.random.choice((1, 4096, 4097))), ROBOT))
         self._say(messages.CODE, offset=offset, code=self.random.randbytes(size))
-        self._say(messages.START)
+        self._say(messages.START, at_ms=0)
 
     def _program(self) -> None:
         code = program_of(self.random)
@@ -107,7 +112,7 @@ class Attacker:
         self._say(messages.PROGRAM, header=program.header(code, ROBOT, self.random.randrange(2)))
         for at in range(0, len(code), 192):
             self._say(messages.CODE, offset=at, code=code[at : at + 192])
-        self._say(messages.START)
+        self._say(messages.START, at_ms=0)
 
     def _orders(self) -> None:
         self._armed()
@@ -124,7 +129,9 @@ class Attacker:
         self.line.read(self.line.now_s() + self.random.choice((0.05, 0.1)))  # of the self-test, or after it
 
     def _words(self) -> None:
-        self._say(messages.SUBSCRIBE, period_ms=self.random.choice((0, 1, 50)))
+        self._say(
+            messages.SUBSCRIBE, slot=0, period_ms=self.random.choice((0, 1, 50)), on_change=0, variables=b"",
+        )  # fmt: skip
         self._say(self.random.choice((messages.STATUS_REQUEST, messages.CANCEL, messages.DISARM)))
 
     def _silence(self) -> None:

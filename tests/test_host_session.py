@@ -36,6 +36,7 @@ def line(peer):
 def connected(line) -> Robot:
     robot = Robot(line)
     robot.connect()
+    assert list(robot.listen(20)) == []  # the robot takes up the session with its first frame
     return robot
 
 
@@ -82,9 +83,9 @@ def test_a_robot_with_another_table_of_messages_is_refused_and_the_lines_are_nam
 
 
 def test_a_robot_of_another_protocol_version_is_refused(peer, line):
-    peer._hello = lambda order: peer._post(messages.NAK, kind=1, code=codes.OTHER_VERSION, version=2)
+    peer._hello = lambda order: peer._post(messages.NAK, kind=1, code=codes.OTHER_VERSION, version=3)
 
-    with pytest.raises(Mismatch, match="version 2 of the protocol, this host 1: update the softrig"):
+    with pytest.raises(Mismatch, match="version 3 of the protocol, this host 2: update the softrig"):
         connected(line)
 
 
@@ -481,6 +482,7 @@ def test_a_stop_that_nobody_answers_says_so(peer, line):
 
 def test_events_come_once_and_in_order_over_a_bad_line(peer):
     robot = connected(FakeLine(peer, loss=0.2, seed=4))
+    robot.status()
     for value in range(12):
         peer.tell(messages.STEP, 0, 255, value, 0)
 

@@ -6,11 +6,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from protocol import flight, frames
 from protocol import link as links
 from protocol.messages import FIRE, TELEMETRY
 
-SEED = 99
+SEED, SESSION = 99, 7
 PAYLOADS = [bytes((i,)) * (i % 7) for i in range(40)]
+
+
+def ends():
+    """Return host and robot of one session."""
+    pair = links.Link(), links.Link(device=True)
+    for end in pair:
+        end.begin(SEED, SESSION)
+    return pair
 
 
 class Weather:
@@ -44,7 +53,7 @@ class Weather:
 
 def talk(seed: int, share: float, until_ms: int = 60_000):
     """Send PAYLOADS both ways; return what each end got and the two ends."""
-    a, b = links.Link(SEED), links.Link(SEED)
+    a, b = ends()
     there, back = Weather(seed, share), Weather(seed + 1, share)
     got_a, got_b = [], []
     to_send = {a: list(PAYLOADS), b: list(PAYLOADS)}
@@ -81,19 +90,19 @@ def test_commands_arrive_exactly_once_and_in_order_over_a_bad_line(seed):
 
 def test_a_frame_that_nobody_acknowledges_breaks_the_link_and_is_still_sent_again():
     """A cable that is put back after a minute finds the event that was waiting; the host gives up by itself."""
-    link = links.Link(SEED)
+    link, _ = ends()
     link.send(FIRE.number, b"", 0)
 
     sent = [now_ms for now_ms in range(0, 60_000, 5) if link.poll(now_ms)]
 
     assert link.broken
     assert sent[:3] == [0, 250, 650]  # the first time-out, then doubled as far as RTO_MAX_MS
-    assert sent[-1] - sent[-2] == links.RTO_MAX_MS
+    assert sent[-1] - sent[-2] == flight.RTO_MAX_MS
     assert sent[-1] > 58_000
 
 
-def test_an_unseeded_answer_does_not_carry_an_acknowledgement():
-    a, b = links.Link(SEED), links.Link(SEED)
+def test_a_greeting_does_not_carry_an_acknowledgement():
+    a, b = ends()
     a.send(FIRE.number, b"", 0)
     b.receive(a.poll(0), 1)
     b.post(0x02, b"identity")
@@ -104,7 +113,7 @@ def test_an_unseeded_answer_does_not_carry_an_acknowledgement():
 
 
 def test_posted_frames_are_not_resent_and_their_gaps_are_counted():
-    a, b = links.Link(SEED), links.Link(SEED)
+    a, b = ends()
     for number in range(5):
         a.post(TELEMETRY.number, bytes((number,)))
         data = a.poll(0)
@@ -117,7 +126,7 @@ def test_posted_frames_are_not_resent_and_their_gaps_are_counted():
 
 
 def test_a_full_queue_is_an_error_of_the_caller_and_posts_give_way():
-    link = links.Link(SEED)
+    link, _ = ends()
     for _ in range(links.QUEUE_MAX):
         link.send(FIRE.number, b"", 0)
         link.post(TELEMETRY.number, b"")
@@ -129,7 +138,7 @@ def test_a_full_queue_is_an_error_of_the_caller_and_posts_give_way():
 
 
 def test_an_acknowledgement_is_sent_even_when_there_is_nothing_to_say():
-    a, b = links.Link(SEED), links.Link(SEED)
+    a, b = ends()
     a.send(FIRE.number, b"", 0)
     b.receive(a.poll(0), 1)
 
@@ -138,20 +147,21 @@ def test_an_acknowledgement_is_sent_even_when_there_is_nothing_to_say():
     assert a.idle()
 
 
-def test_a_reset_link_starts_from_zero():
-    a, b = links.Link(SEED), links.Link(SEED)
+def test_a_session_that_begins_anew_starts_from_zero():
+    a, b = ends()
     a.send(FIRE.number, b"old", 0)
     b.receive(a.poll(0), 0)
-    a.reset(SEED)
-    b.reset(SEED)
+    a.begin(SEED, SESSION)
+    b.begin(SEED, SESSION)
 
     a.send(FIRE.number, b"new", 0)
 
     assert [received.payload for received in b.receive(a.poll(0), 0)] == [b"new"]
 
 
-def test_unseeded_frames_do_not_touch_the_session():
-    a, b = links.Link(SEED), links.Link(SEED + 1)
+def test_greetings_do_not_touch_the_session():
+    a, b = ends()
+    b.begin(SEED + 1, SESSION)
     a.post(0x01, b"hi")
 
     (received,) = b.receive(a.poll(0), 5)
@@ -161,7 +171,7 @@ def test_unseeded_frames_do_not_touch_the_session():
 
 
 def test_no_more_is_written_than_there_is_room_and_nothing_is_lost():
-    a, b = links.Link(SEED), links.Link(SEED)
+    a, b = ends()
     for number in range(6):
         a.send(FIRE.number, bytes((number,)) * 200, 0)
         a.post(TELEMETRY.number, bytes((number,)) * 200)
@@ -175,3 +185,152 @@ def test_no_more_is_written_than_there_is_room_and_nothing_is_lost():
 
     assert got == [0, 1, 2, 3, 4, 5] * 2
     assert (b.missed, a.resent) == (0, 0)
+
+
+def test_only_the_frame_that_is_missing_is_sent_again_and_before_its_time_is_over():
+    a, b = ends()
+    for number in range(6):
+        a.send(FIRE.number, bytes((number,)), 0)
+    pieces = a.poll(0).split(b"\x00")[:-1]
+    b.receive(b"".join(piece + b"\x00" for piece in pieces[:2] + pieces[3:]), 5)
+    a.receive(b.poll(5), 10)
+
+    again = a.poll(10)
+
+    assert again.count(b"\x00") == 1
+    assert [received.payload[0] for received in b.receive(again, 15)] == [2, 3, 4, 5]
+    assert a.resent == 1
+
+
+def test_no_frame_leaves_beyond_the_credit_in_frames_or_in_bytes():
+    a, _ = ends()
+    a.granted(3, 1000)
+    for _ in range(10):
+        a.send(FIRE.number, bytes(20), 0)
+    assert a.poll(0).count(b"\x00") == 3
+
+    a, _ = ends()
+    a.granted(16, 100)
+    for _ in range(10):
+        a.send(FIRE.number, b"x" * 20, 0)
+    assert len(a.poll(0)) == 3 * 30
+
+
+def test_without_credit_one_frame_is_tried_after_a_while_so_that_nothing_stands_still_for_ever():
+    a, _ = ends()
+    a.granted(0, 100)
+    a.send(FIRE.number, b"", 0)
+    a.send(FIRE.number, b"", 0)
+
+    assert a.poll(0) == b""
+    assert a.poll(a.due_ms(0)).count(b"\x00") == 1
+
+
+def test_an_end_that_cannot_answer_gives_no_credit_until_it_can_again():
+    a, b = ends()
+    for _ in range(links.QUEUE_MAX):
+        b.send(FIRE.number, b"", 0)
+    b.acknowledge()
+    told = b.poll(0)
+    a.receive(told, 0)
+    a.send(FIRE.number, b"", 0)
+
+    a_said = a.poll(0)
+    assert FIRE.number not in kinds_of(a_said)
+    b.receive(a_said, 0)
+
+    for now_ms in range(5, 60, 5):
+        b.receive(a.poll(now_ms), now_ms)
+        a.receive(b.poll(now_ms), now_ms)
+    assert a.idle()
+
+
+def test_a_session_on_offer_begins_with_its_first_frame_and_not_before():
+    host, robot = ends()
+    late = links.Link()
+    late.begin(SEED, SESSION + 1)
+    robot.offer(SESSION + 1)
+    host.send(FIRE.number, b"old", 0)
+    assert [received.payload for received in robot.receive(host.poll(0), 0)] == [b"old"]
+
+    robot.may_adopt = True
+    late.send(FIRE.number, b"new", 0)
+    assert [received.payload for received in robot.receive(late.poll(0), 0)] == [b"new"]
+    host.send(FIRE.number, b"old", 0)
+
+    assert robot.receive(host.poll(0), 0) == []
+    assert robot.session == SESSION + 1
+
+
+def test_a_session_on_offer_waits_while_it_may_not_begin():
+    host, robot = ends()
+    late = links.Link()
+    late.begin(SEED, SESSION + 1)
+    robot.offer(SESSION + 1)
+    late.send(FIRE.number, b"new", 0)
+
+    assert robot.receive(late.poll(0), 0) == []
+    assert (robot.foreign, robot.session) == (1, SESSION)
+    host.send(FIRE.number, b"old", 0)
+    assert [received.payload for received in robot.receive(host.poll(0), 0)] == [b"old"]
+
+
+def test_the_time_out_follows_the_round_trip_down_to_what_the_line_can_do():
+    """No floor but the step of the robot's clock: on a quick line a lost frame costs some ms, not a tenth of a second."""
+    a, b = ends()
+    for now_ms in range(0, 500, 5):
+        a.send(FIRE.number, b"", now_ms)
+        b.receive(a.poll(now_ms), now_ms)
+        a.receive(b.poll(now_ms), now_ms)
+    a.send(FIRE.number, b"", 500)
+    a.poll(500)
+
+    assert a.due_ms(500) - 500 <= 10
+
+
+def test_a_long_frame_on_a_slow_line_is_given_the_time_that_its_bytes_take():
+    a, _ = ends()
+    a.byte_ns = 8_333_333  # 1200 baud
+    a.send(FIRE.number, bytes(200), 0)
+    a.poll(0)
+
+    assert a.due_ms(0) > 200 * 8
+
+
+def test_a_frame_for_another_node_of_the_line_is_not_taken():
+    host, robot = links.Link(node=4), links.Link(node=5, device=True)
+    host.begin(SEED, SESSION)
+    robot.begin(SEED, SESSION)
+    host.send(FIRE.number, b"", 0)
+
+    assert robot.receive(host.poll(0), 0) == []
+    assert robot.heard_ms is None
+
+
+def test_a_robot_of_a_shared_line_answers_with_its_number_when_it_is_called_by_it():
+    host, robot = links.Link(node=5), links.Link(node=5, device=True)
+    host.begin(SEED, SESSION)
+    robot.begin(SEED, SESSION)
+    host.send(FIRE.number, b"", 0)
+    robot.receive(host.poll(0), 0)
+
+    host.receive(robot.poll(0), 0)
+
+    assert host.idle()
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.lists(st.binary(max_size=300), max_size=30))
+def test_what_arrives_never_raises_and_memory_stays_bounded(pieces):
+    _, robot = ends()
+
+    for piece in pieces:
+        robot.receive(piece, 0)
+
+    assert len(robot._ahead) < links.WINDOW
+
+
+def kinds_of(line):
+    """Return the kinds of the frames on a line."""
+    decoder = frames.Decoder(SEED, SESSION)
+    return [frame.kind for frame in decoder.feed(line)]

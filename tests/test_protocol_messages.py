@@ -30,9 +30,9 @@ def test_a_payload_of_the_wrong_length_is_refused(payload):
 
 
 def test_a_last_field_of_text_takes_the_rest():
-    page = messages.DICTIONARY_PAGE.unpack(messages.DICTIONARY_PAGE.pack(offset=7, text=b"abc"))
+    page = messages.DICTIONARY_PAGE.unpack(messages.DICTIONARY_PAGE.pack(part=0, offset=7, text=b"abc"))
 
-    assert (page.offset, page.text) == (7, b"abc")
+    assert (page.part, page.offset, page.text) == (0, 7, b"abc")
 
 
 def test_the_dictionary_is_the_table_then_a_blank_line_then_the_profile():

@@ -2,15 +2,18 @@
 
 Two PCA9685 drive the coils' low-side MOSFETs, an INA226 watches the common supply, a thermistor the board; some robots
 carry an LSM6DS3TR-C besides, for their attitude. The outputs are enabled only while the heartbeat pin keeps moving (a
-retriggerable monostable of 50 ms) and the emergency-stop loop is closed: a hung processor cannot hold a coil on.
+retriggerable monostable of 50 ms) and the emergency-stop loop is closed: a hung processor cannot hold a coil on. An
+MCP2515 joins the robot to a CAN bus where it is fitted.
 """
 
 import time
 
-from machine import ADC, I2C, UART, WDT, Pin, unique_id
+from machine import ADC, I2C, SPI, UART, WDT, Pin, unique_id
 
+from firmware.canport import CanPort
 from firmware.drivers.ina226 import Ina226
 from firmware.drivers.lsm6ds3tr import Lsm6ds3tr
+from firmware.drivers.mcp2515 import Mcp2515
 from firmware.drivers.ntc import decidegc
 from firmware.drivers.pca9685 import Pca9685
 
@@ -24,10 +27,17 @@ WATCHDOG_MS = 200
 WRITING_MS = 2000  # the flash erases a sector in 45 ms, at worst in 400 ms (W25Q16JV), and a file may take two
 BAUD = 115_200
 BUFFER_BYTES = 512
+CRYSTAL_HZ = 8_000_000  # of the MCP2515
+SPI_HZ = 8_000_000
+QUIET_US, BUSY_US = 500, 200  # between two looks at the CAN bus; the second while frames wait to be sent
+CREDIT_BYTES = 448  # of unacknowledged frames; what is acknowledged to nobody, as a hello, needs the rest
 
 
 class Board:
     """The hardware as the core sees it: a supply switch, a heartbeat, PWM outputs, sensors and a serial line."""
+
+    credit_bytes = CREDIT_BYTES
+    byte_ns = 10 * 1_000_000_000 // BAUD
 
     def __init__(self) -> None:
         self._power = Pin(PWR_EN, Pin.OUT, value=0)
@@ -36,7 +46,7 @@ class Board:
         self._alert = Pin(ALERT, Pin.IN, Pin.PULL_UP)
         self._warm = Pin(WARM, Pin.IN, Pin.PULL_UP)
         self._beat = 0
-        self._bus = I2C(0, scl=Pin(SCL), sda=Pin(SDA), freq=400_000, timeout=1000)
+        self._bus = Attended(I2C(0, scl=Pin(SCL), sda=Pin(SDA), freq=400_000, timeout=1000))
         self._uart = UART(0, baudrate=BAUD, tx=Pin(TX), rx=Pin(RX), txbuf=BUFFER_BYTES, rxbuf=BUFFER_BYTES)
         self._quiet_ms = time.ticks_ms()  # when the line will have sent all that was written
         self._thermistor = ADC(Pin(THERMISTOR))
@@ -53,6 +63,29 @@ class Board:
     def imu(self, address: int) -> Lsm6ds3tr:
         """Return the driver of the attitude sensor at that address."""
         return Lsm6ds3tr(self._bus, address)
+
+    def can(self, node: int) -> CanPort | None:
+        """Return the CAN port of a robot with that number, or None when there is no controller."""
+        spi = SPI(0, SPI_HZ, sck=Pin(SCK), mosi=Pin(MOSI), miso=Pin(MISO))
+        chip = Mcp2515(spi, Pin(CAN_SELECT, Pin.OUT, value=1), CRYSTAL_HZ)
+        try:
+            self._bus.port = CanPort(chip, Pin(CAN_INTERRUPT, Pin.IN, Pin.PULL_UP), node)
+        except OSError:
+            return None
+        return self._bus.port
+
+    def rest(self, time_ms: int) -> None:
+        """Let time pass between two control steps; the CAN bus is looked after meanwhile, if anybody is on it."""
+        port = self._bus.port
+        if port is None or not port.awake:
+            time.sleep_ms(time_ms)
+            return
+        left_us = time_ms * 1000
+        end = time.ticks_add(time.ticks_us(), left_us)
+        while left_us > 0:
+            port.look()
+            time.sleep_us(min(left_us, BUSY_US if port.waiting() else QUIET_US))
+            left_us = time.ticks_diff(end, time.ticks_us())
 
     def power(self, on: bool) -> None:
         """Switch the coil supply."""
@@ -118,6 +151,26 @@ class Board:
             self.watch()
         else:
             self._watchdog.feed()
+
+
+class Attended:
+    """The I2C bus, with a look at the CAN bus before each access: no frame may wait for the end of a control step."""
+
+    def __init__(self, bus) -> None:
+        self.port = None
+        self._bus = bus
+
+    def writeto_mem(self, address: int, register: int, data) -> None:
+        """Write registers of a chip."""
+        if self.port:
+            self.port.look()
+        self._bus.writeto_mem(address, register, data)
+
+    def readfrom_mem_into(self, address: int, register: int, data) -> None:
+        """Fill `data` from registers of a chip."""
+        if self.port:
+            self.port.look()
+        self._bus.readfrom_mem_into(address, register, data)
 
 
 def boot_number() -> int:
