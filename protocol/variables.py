@@ -2,11 +2,12 @@
 
 A variable is a name, whose end is the unit, and a struct letter; a `*` behind it stands for one value for each coil, in
 the order of the robot's channels. Its number is its place in the table. A record holds the values one after the other
-in the order in which they were asked for, little endian, no padding; what one means is the comment beside it.
+in the order in which they were asked for, little endian, no padding; what one means is the comment beside it. On the
+line they are veiled: a coil that is off is all zeros, and on a small board each zero costs more to stuff than the rest.
 
     numbers = [number("state"), number("coil_decidegc")]
     size(numbers, coils=8)
-    state, coil_decidegc = unpack(numbers, values, coils=8)
+    state, coil_decidegc = unpack(numbers, veiled(values), coils=8)
 """
 
 import struct
@@ -77,6 +78,12 @@ def unpack(numbers, values: bytes, coils: int) -> list:
             found.append(flat[at])
             at += 1
     return found
+
+
+def veiled(values: bytes) -> bytes:
+    """Return every byte exclusive-ored with 0x55: values as they go on the line, or what came from it as values."""
+    count = len(values)
+    return (int.from_bytes(values, "little") ^ int.from_bytes(b"\x55" * count, "little")).to_bytes(count, "little")
 
 
 # What a host that asks for nothing else is told, and what every listener can read.

@@ -1,0 +1,93 @@
+"""What each variable of protocol/variables.py is at this moment, for the records of telemetry.
+
+readings = Readings(core)
+values = []
+readings.readers[variables.number("supply_mv")](values)
+"""
+
+
+class Readings:
+    """The variables of one core; `readers`, in the order of the table, each add the value or values of theirs."""
+
+    def __init__(self, core) -> None:
+        self.readers = (
+            self._state, self._code, self._step, self._coils_on, self._without, self._lease_left, self._supply,
+            self._current, self._board, self._roll, self._pitch, self._down, self._dropped, self._resent,
+            self._overruns, self._duties, self._temperatures, self._heats, self._resistances, self._martensites,
+            self._least, self._most,
+        )  # fmt: skip
+        self._core = core
+        self._channels, self._sense, self._attitude = core.channels, core.sense, core.attitude
+        self._resistance = core.control.resistance
+        self._budget_mj = core.profile.coil.heat_budget_mj
+
+    def _state(self, values: list) -> None:
+        values.append(self._core.state)
+
+    def _code(self, values: list) -> None:
+        values.append(self._core.code)
+
+    def _step(self, values: list) -> None:
+        values.append(self._core.player.step)
+
+    def _coils_on(self, values: list) -> None:
+        values.append(self._channels.on_mask)
+
+    def _without(self, values: list) -> None:
+        values.append(self._channels.without_mask)
+
+    def _lease_left(self, values: list) -> None:
+        values.append(self._core.lease_left_ms())
+
+    def _supply(self, values: list) -> None:
+        values.append(self._sense.supply_mv)
+
+    def _current(self, values: list) -> None:
+        values.append(self._sense.current_ma)
+
+    def _board(self, values: list) -> None:
+        values.append(self._sense.board_decidegc)
+
+    def _roll(self, values: list) -> None:
+        values.append(self._attitude.roll_decideg())
+
+    def _pitch(self, values: list) -> None:
+        values.append(self._attitude.pitch_decideg())
+
+    def _down(self, values: list) -> None:
+        values.append(self._attitude.down_channel())
+
+    def _dropped(self, values: list) -> None:
+        values.append(self._core.link.decoder.dropped & 0xFFFF)
+
+    def _resent(self, values: list) -> None:
+        values.append(self._core.link.resent & 0xFFFF)
+
+    def _overruns(self, values: list) -> None:
+        values.append(self._core.overruns & 0xFFFF)
+
+    def _duties(self, values: list) -> None:
+        values.extend(self._channels.duty_permille)
+
+    def _temperatures(self, values: list) -> None:
+        values.extend([millidegc // 100 for millidegc in self._sense.temperature_millidegc])
+
+    def _heats(self, values: list) -> None:
+        budget_mj = self._budget_mj
+        values.extend([min(heat_uj // budget_mj, 0xFFFF) for heat_uj in self._sense.heat_uj])
+
+    def _resistances(self, values: list) -> None:
+        resistance = self._resistance
+        values.extend([resistance.measured_mohm(channel) for channel in range(self._channels.count)])
+
+    def _martensites(self, values: list) -> None:
+        resistance = self._resistance
+        values.extend([resistance.martensite_permille(channel) for channel in range(self._channels.count)])
+
+    def _least(self, values: list) -> None:
+        resistance = self._resistance
+        values.extend([resistance.least_decidegc(channel) for channel in range(self._channels.count)])
+
+    def _most(self, values: list) -> None:
+        resistance = self._resistance
+        values.extend([resistance.most_decidegc(channel) for channel in range(self._channels.count)])
