@@ -8,17 +8,14 @@ under any load. An interrupt from the keyboard meets the host between two events
     data = link.read(link.now_s() + 0.1)
 """
 
-import signal
-import threading
 import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
 from math import ceil
-from types import FrameType
-from typing import Any
 
 from hil_sim.address import parse
 from hil_sim.bench import Bench
+from hil_sim.interrupts import interrupts_deferred
 
 BOOTED_US = 100_000  # the robot has been on for a moment when the host finds it
 
@@ -28,7 +25,7 @@ def open_link(address: str) -> "SimLink":
 
     ValueError (of the address or the robot file), LookupError or OSError say in their text what is wrong.
     """
-    with _interrupts_deferred(None):
+    with interrupts_deferred(None):
         from hil_sim.assembly import assemble  # noqa: PLC0415  (heavy: the compiled physics)
 
         bench = assemble(parse(address))
@@ -73,7 +70,7 @@ class SimLink:
         data = self._line.host_read(clock.now_us)
         while not data and clock.now_us < until_us:
             wake_us = self._line.host_wake_us()
-            with self._woken_by_bytes(), _interrupts_deferred(self.bench):
+            with self._woken_by_bytes(), interrupts_deferred(clock):
                 clock.run_until(until_us if wake_us is None else min(until_us, wake_us))
             data = self._line.host_read(clock.now_us)
         return data
@@ -89,31 +86,3 @@ class SimLink:
     def close(self) -> None:
         """End the bench; closing twice does nothing."""
         self._end()
-
-
-@contextmanager
-def _interrupts_deferred(bench: Bench | None) -> Iterator[None]:
-    """Let Ctrl-C end the run of `bench` at its present instant and be felt only after it: it belongs to the host.
-
-    Without a bench, which is then being built: machine code is loaded by callbacks that lose an exception or abort.
-    A second Ctrl-C is felt at once there, as a first compilation takes its time.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    came: list[int] = []
-
-    def note(number: int, frame: FrameType | None) -> None:
-        if came and bench is None:
-            raise KeyboardInterrupt
-        came.append(number)
-        if bench is not None:
-            bench.clock.stop_at(0)
-
-    before: Any = signal.signal(signal.SIGINT, note)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
-        if came:
-            signal.raise_signal(signal.SIGINT)

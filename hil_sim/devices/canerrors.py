@@ -11,10 +11,11 @@ _COUNT_MAX = 255
 
 
 class Errors:
-    """Counts, from 0."""
+    """Counts, from 0. `unanswered`: the last frame of its own failed because nobody acknowledged it."""
 
     def __init__(self) -> None:
         self.transmit = self.receive = 0
+        self.unanswered = False
 
     def reset(self) -> None:
         """Begin anew, as configuration mode and the end of bus-off do."""
@@ -40,6 +41,7 @@ class Errors:
 
     def failed(self, unanswered: bool) -> None:
         """A frame of its own failed, because nobody acknowledged it or for another reason."""
+        self.unanswered = unanswered
         if not (unanswered and self.passive):
             self.transmit += 8
 
