@@ -18,7 +18,7 @@ SHORT = {
     "mu": "ground.friction_ratio",
     "supply": "wiring.supply_v",
 }
-OPTIONS = (*SHORT, "seed", "set", "open", "world", "baud", "body", "faults", "node")
+OPTIONS = (*SHORT, "seed", "set", "open", "world", "baud", "body", "faults", "node", "key")
 WORLDS = ("cpython", "micropython")
 BODIES = ("moving", "still")
 BAUD_MAX = 4_000_000
@@ -41,6 +41,7 @@ class Address:
     open: tuple[str, ...] = ()  # coils whose wire is broken
     body: str = BODIES[0]
     faults: str = ""  # path of a fault file
+    key: str = ""  # path of the file that it was given as its pairing key
     node: int = 0  # its number on a bus, which it was given before; 0: none was
 
 
@@ -82,6 +83,8 @@ def _take(address: Address, name: str, value: str) -> None:
         address.node = _whole(name, value, 1, NODE_MAX)
     elif name == "faults":
         address.faults = value
+    elif name == "key":
+        address.key = value
     elif name == "body":
         address.body = _one_of(name, value, BODIES)
     else:

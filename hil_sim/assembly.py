@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from hil_sim.address import BODIES, Address
+from hil_sim.address import BODIES, Address, AddressError
 from hil_sim.bench import Bench, Parts, Plant
 from hil_sim.clock import Clock
 from hil_sim.devices.canwire import CanWire
@@ -24,13 +24,18 @@ from hil_sim.worlds import cpython, micropython, preset
 from hil_sim.worlds.image import Image
 from hil_sim.worlds.world import Interpreter
 
+KEY = "key"  # where the firmware looks for its pairing key
+KEY_BYTES_MAX = 4096
+
 
 def assemble(address: Address, clock: Clock | None = None, can_wire: CanWire | None = None) -> Bench:
     """Return the bench of an address, powered on, with a clock and a CAN bus of its own unless they are given.
 
-    RobotFileError when its robot cannot be built, FaultFileError when its fault file cannot be used.
+    RobotFileError when its robot cannot be built, FaultFileError when its fault file cannot be used, AddressError when
+    its key file cannot be read.
     """
     faults = load_faults(Path(address.faults)) if address.faults else []
+    key_file = _key_file(address.key) if address.key else b""
     robot = load(address.robot, address.overrides)
     for label in address.open:
         if label not in robot.labels:
@@ -49,6 +54,8 @@ def assemble(address: Address, clock: Clock | None = None, can_wire: CanWire | N
     if address.node:
         for path, data in preset.number(image, address.node).items():
             bench.board.flash.store(path, data)
+    if address.key:
+        bench.board.flash.store(KEY, key_file)
     for label in address.open:
         schedule(bench, bench.clock.now_us, f"coil-open:{label}")
     plan(bench, faults)
@@ -67,6 +74,15 @@ def interpreter_of(world: str) -> Interpreter:
         return cpython.execute
     micropython.interpreter()
     return micropython.execute
+
+
+def _key_file(path: str) -> bytes:
+    """Return what a file holds, whatever that is, as somebody with a cable would put it on the board."""
+    try:
+        with open(path, "rb") as file:
+            return file.read(KEY_BYTES_MAX)
+    except OSError as error:
+        raise AddressError(f"key={path}: {error.strerror}") from error
 
 
 def _agree(robot: RobotFile, profile: bytes) -> None:

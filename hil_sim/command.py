@@ -38,6 +38,8 @@ class Speed(click.FloatRange):
 @click.argument("name")
 @click.option("--link", type=click.Path(path_type=Path), help="Keep a symbolic link to the port at this path.")
 @click.option("--tcp", type=click.IntRange(0, 65_535), help="Listen on 127.0.0.1 too; 0 takes any free port.")
+@click.option("--listen", metavar="ADDRESS", help="Where --tcp listens, if others may come: needs a key.")
+@click.option("--key", type=click.Path(dir_okay=False), help="Give the robot the pairing key in this file.")
 @click.option("--speed", type=Speed(0.01, 100), default=1.0, help="Virtual seconds in one real second.")
 @click.option("--seed", type=click.IntRange(0, 2**32 - 1), help="Identity of the run.")
 @click.option("--slope", type=float, help="Slope of the ground in degrees, uphill positive.")
@@ -47,6 +49,8 @@ def sim(
     name: str,
     link: Path | None,
     tcp: int | None,
+    listen: str | None,
+    key: str | None,
     speed: float,
     seed: int | None,
     slope: float | None,
@@ -62,10 +66,14 @@ def sim(
     from hil_sim.ports import PortError  # noqa: PLC0415
     from hil_sim.soundness import CameApart  # noqa: PLC0415
 
-    bench = _bench(name, seed, slope, faults)
+    address = _address(name, seed, slope, faults, key)
+    if listen and tcp is None:
+        raise click.UsageError("--listen says where a TCP port listens: add --tcp PORT")
+    place = None if tcp is None else (_listening(listen, address), tcp)
+    bench = _bench(address)
     try:
         bench.clock.run_until(BOOTED_US)
-        _serve(bench, name, link, tcp, speed, as_json)
+        _serve(bench, name, link, place, speed, as_json)
     except PortError as error:
         raise NoRobot(str(error)) from error
     except CameApart as error:
@@ -91,13 +99,36 @@ def robots(as_json: bool) -> None:
         _say(as_json, fields, f"{address:13} {len(labels):2} coils  {robot.about}\n{coils}")
 
 
-def _bench(name: str, seed: int | None, slope: float | None, faults: str | None) -> Bench:
-    from hil_sim.address import parse  # noqa: PLC0415
+def _address(name: str, seed: int | None, slope: float | None, faults: str | None, key: str | None) -> Address:
+    from hil_sim.address import AddressError, parse  # noqa: PLC0415
 
     try:
         address = parse(name)
-        _override(address, seed, slope)
-        address.faults = faults or address.faults
+    except AddressError as error:
+        raise click.UsageError(str(error)) from error
+    _override(address, seed, slope)
+    address.faults = faults or address.faults
+    address.key = key or address.key
+    return address
+
+
+def _listening(listen: str | None, address: Address) -> str:
+    """Return the address that a TCP port listens at: of this machine alone, unless the robot has a key."""
+    from ipaddress import ip_address  # noqa: PLC0415
+
+    from hil_sim.ports import LOOPBACK  # noqa: PLC0415
+
+    try:
+        place = ip_address(listen or LOOPBACK)
+    except ValueError:
+        raise click.UsageError(f"--listen {listen}: write an IP address, such as 0.0.0.0 for all") from None
+    if not (place.is_loopback or address.key):
+        raise click.UsageError(f"--listen {listen}: others may come there, so the robot needs a key: --key FILE")
+    return str(place)
+
+
+def _bench(address: Address) -> Bench:
+    try:
         return _assembled(address)
     except LookupError as error:
         raise NoRobot(str(error)) from error
@@ -120,7 +151,9 @@ def _override(address: Address, seed: int | None, slope: float | None) -> None:
         address.overrides[SHORT["slope"]] = str(slope)
 
 
-def _serve(bench: Bench, name: str, link: Path | None, tcp: int | None, speed: float, as_json: bool) -> None:
+def _serve(
+    bench: Bench, name: str, link: Path | None, tcp: tuple[str, int] | None, speed: float, as_json: bool
+) -> None:
     from hil_sim.announcement import Announcement  # noqa: PLC0415
     from hil_sim.ports import Pace, Port, Pty, Tcp, serve  # noqa: PLC0415
 
@@ -129,9 +162,9 @@ def _serve(bench: Bench, name: str, link: Path | None, tcp: int | None, speed: f
         ports: list[Port] = [pty]
         where: dict[str, Any] = {"robot": name, "pty": pty.path, "link": str(link.absolute()) if link else None}
         if tcp is not None:
-            server = stack.enter_context(Tcp(tcp))
+            server = stack.enter_context(Tcp(tcp[1], tcp[0]))
             ports.append(server)
-            where["tcp"] = f"socket://127.0.0.1:{server.port}"
+            where["tcp"] = f"socket://{f'[{tcp[0]}]' if ':' in tcp[0] else tcp[0]}:{server.port}"
         ended = _until_a_signal(stack)
         stack.enter_context(Announcement(where))
         places = ", ".join(str(where[key]) for key in ("link", "pty", "tcp") if where.get(key))

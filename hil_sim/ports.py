@@ -23,6 +23,7 @@ from hil_sim.bench import Bench
 STALL_S = 0.020
 TICK_S = 0.001
 CHUNK = 65_536
+LOOPBACK = "127.0.0.1"
 
 
 class PortError(OSError):
@@ -135,13 +136,16 @@ class Pty:
 
 
 class Tcp:
-    """A TCP port on this machine only; one host at a time, the next is refused. `port` 0 takes any free one."""
+    """A TCP port, on this machine only unless told otherwise; one host at a time, the next is refused.
 
-    def __init__(self, port: int) -> None:
-        self._listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    `port` 0 takes any free one.
+    """
+
+    def __init__(self, port: int, address: str = LOOPBACK) -> None:
+        self._listener = socket.socket(socket.AF_INET6 if ":" in address else socket.AF_INET, socket.SOCK_STREAM)
         self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
-            self._listener.bind(("127.0.0.1", port))
+            self._listener.bind((address, port))
         except OSError as error:
             self._listener.close()
             raise PortError(f"TCP port {port}: {error.strerror}") from error
