@@ -65,6 +65,12 @@ class Refused(SoftrigError):
         super().__init__(f"{request}{where} refused: {_told(code, value, limit)}")
 
 
+class NotPaired(SoftrigError):
+    """Robot and host do not share a pairing key: one of them has none, or another; nothing was ordered."""
+
+    exit_code = 4
+
+
 class Mismatch(SoftrigError):
     """Host and robot do not speak the same language."""
 

@@ -33,6 +33,7 @@ COMMANDS = {
     "calibrate": "Measure and keep the resistance of every coil.",
     "check": "Prove a script against the limits of its robot.",
     "run": "Check a script, run it, watch and report.",
+    "key": "Make pairing keys.",
     "explain": "Explain an error, refusal or fault code.",
     "deploy": "Put the firmware on a board and keep it once it is healthy.",
     "log": "Look into logs: info, export, plot.",

@@ -8,16 +8,34 @@ from typing import Any, TypeVar
 
 import click
 
+from host.keys import read
+
 F = TypeVar("F", bound=Callable[..., Any])
+KEY = "softrig.key"
 ROBOT_HELP = "sim:NAME, the path of a port, or socket://HOST:PORT."
 
 
-def robot_option(required: bool = True) -> Callable[[F], F]:
-    """Add --robot, which SOFTRIG_ROBOT can give too."""
+def robot_option(required: bool = True, ordered: bool = True) -> Callable[[F], F]:
+    """Add --robot, which SOFTRIG_ROBOT can give too; and --key, if the robot is given orders."""
     help_text = ROBOT_HELP if required else f"{ROBOT_HELP} Without it: a bench with the script's robot."
-    return click.option(
+    robot = click.option(
         "--robot", metavar="ADDRESS", envvar="SOFTRIG_ROBOT", show_envvar=True, required=required, help=help_text
     )
+    return (lambda command: robot(key_option(command))) if ordered else robot
+
+
+def key_option(command: F) -> F:
+    """Add --key, which SOFTRIG_KEY can give too; `given_key` reads it once the robot is to be greeted."""
+    return click.option(
+        "--key", metavar="FILE", envvar="SOFTRIG_KEY", show_envvar=True, expose_value=False, callback=_remember_key,
+        help="The robot's pairing key, if it has one.",
+    )(command)  # fmt: skip
+
+
+def given_key() -> bytes:
+    """Return the pairing key that the running command was given, b"": none; BadRequest when it cannot be read."""
+    path = click.get_current_context().meta.get(KEY)
+    return read(path) if path else b""
 
 
 def without_option(command: F) -> F:
@@ -55,6 +73,10 @@ def _measured(text: str, factors: dict[str, int]) -> int:
 def _split(ctx: click.Context, param: click.Parameter, values: tuple[str, ...]) -> tuple[str, ...]:
     """Return what stands between the commas."""
     return tuple(name.strip() for value in values for name in value.split(",") if name.strip())
+
+
+def _remember_key(ctx: click.Context, param: click.Parameter, value: str | None) -> None:
+    ctx.meta[KEY] = value
 
 
 def _remember(ctx: click.Context, param: click.Parameter, value: bool) -> bool:

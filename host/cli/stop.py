@@ -13,7 +13,7 @@ from host.robot import Robot
 
 
 @click.command("stop")
-@robot_option()
+@robot_option(ordered=False)
 @json_option
 def command(robot: str, as_json: bool) -> None:
     """Switch everything off at once, from any state; latched until `softrig clear`."""
