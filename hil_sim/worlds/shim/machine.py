@@ -6,6 +6,7 @@ constants and functions are those of the bench's own module, which tells them at
 
 from bench import ADC as CONVERT
 from bench import DESK, FEED, I2C_READ, I2C_WRITE, MACHINE, PIN_GET, PIN_SET, UART_READ, UART_WRITE, Remote, line
+from bench import SPI as EXCHANGE
 
 PIN_US, WATCHDOG_US = line.call(DESK, "costs_us")
 
@@ -53,6 +54,20 @@ class I2C(Remote):
             line.take(buf)
         else:
             buf[:] = line.call(self.which, "readfrom_mem", (addr, memaddr, len(buf)), {"addrsize": addrsize})
+
+
+class SPI(Remote):
+    """A bus; every byte that goes out brings one in."""
+
+    kind = "SPI"
+
+    def write_readinto(self, write_buf, read_buf):
+        """Send one buffer and fill the other, which may be the same."""
+        if len(write_buf) == len(read_buf) > 0:
+            line.ask(EXCHANGE, self.which, 0, write_buf)
+            line.take(read_buf)
+        else:
+            line.call(self.which, "write_readinto", (write_buf, read_buf))
 
 
 class UART(Remote):
