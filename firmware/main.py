@@ -11,6 +11,7 @@ from firmware.heap import Heap
 from firmware.profile import Profile
 from firmware.tasks import SEND
 from firmware.trial import Trial
+from firmware.wires import Wires
 
 STEP_MS = 5
 
@@ -26,20 +27,22 @@ def run(loud: int, is_new: bool, settled) -> None:
             core = Core(board, Profile(file.read()), pico.boot_number(), reset_cause() == WDT_RESET, loud)
         if board.warm():
             core.sense.assume_hot()  # the power was gone, and with it what was known of the coils
-        loop(board, core, Trial(is_new, settled))
+        loop(board, core, Wires(board, board.can(core.records.settings.node)), Trial(is_new, settled))
     finally:
         board.power(False)
     reset()
 
 
-def loop(board: pico.Board, core: Core, trial: Trial) -> None:
+def loop(board: pico.Board, core: Core, wires: Wires, trial: Trial) -> None:
     """Step the core at its period until its clock must begin anew, or its trial is lost; a late step is counted."""
     now_ms = 0
     last = time.ticks_ms()
     due = last
     heap = Heap()
     while not (core.may_restart() or trial.over(now_ms, core)):
-        board.write(core.step(now_ms, board.read(), board.room()))
+        data = wires.read(now_ms)
+        core.link.byte_ns = wires.byte_ns()
+        wires.write(core.step(now_ms, data, wires.room()), core.link.heard_ms == now_ms)
         core.tasks.report(SEND)
         if core.tasks.complete():
             board.feed()
@@ -48,7 +51,7 @@ def loop(board: pico.Board, core: Core, trial: Trial) -> None:
         if heap.collect(left):
             left = time.ticks_diff(due, time.ticks_ms())
         if left > 0:
-            time.sleep_ms(left)
+            board.rest(left)
         else:
             core.overruns += 1
             due = time.ticks_ms()

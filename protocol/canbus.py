@@ -3,9 +3,12 @@
 Both ends keep one stream of stuffed frames, as on a serial line; this file turns it into CAN frames and back. A body
 travels as a transfer: each CAN frame carries a segment byte and up to 7 bytes of the body, on CAN FD up to 63. The
 segment byte: bit 7 the first, bit 6 the last of a body, bits 5 to 0 a counter that runs on over all segments that its
-sender sends, so that what is left of two bodies never fits together. On CAN FD the first segment tells the body's length
-after its segment byte, because the last may be padded. The stop pattern is a frame of its own that beats all others:
+sender sends, so that what is left of two bodies never fits together. On CAN FD the body's length stands after the first
+segment byte, because the last segment may be padded. The stop pattern is a frame of its own that beats all others:
 standard identifier 0, data `STOP`, for every robot.
+
+A robot's controller has room for one segment, and loses those that come before it was fetched: whoever sends to a
+robot leaves GAP_MS between two of them, and WAKE_MS after the first that follows a second of silence.
 
     for frame in Segmenter(node, host, False).feed(link.poll(now_ms)): ...
     received = assembler.feed(frame.identifier, frame.extended, frame.data, now_ms)
@@ -18,7 +21,7 @@ again; one that comes twice costs nothing.
 from collections import namedtuple
 
 from protocol import frames
-from protocol.messages import SYNC
+from protocol.messages import STOPPED, SYNC
 
 ALL = 127  # the node of every robot, and of every host
 NODE_MAX = 126
@@ -28,6 +31,10 @@ STOP_IDENTIFIER, STOP_DATA = 0, b"STOP"  # a standard frame; every other is exte
 FIRST, LAST, COUNTER = 0x80, 0x40, 0x3F
 BEACONS = (0x58, 0x59)  # kinds whose frames are whole and have no segment byte
 LATE_MS = 100  # between two segments of a body
+GAP_MS = 1  # at least, between two segments to one robot
+WAKE_MS = 6  # at least, after a segment to a robot that heard nothing for SLEEP_MS
+SLEEP_MS = 1000
+BYTE_NS = 1_000_000 * GAP_MS // 7  # of a byte to a robot
 UNDER_WAY_MAX = 4  # bodies at a time
 SYNCHRONISE, ORDERS, ANSWERS, GREETINGS, TELEMETRY = 1, 2, 3, 4, 6  # priorities; 0 is left to the stop
 FROM_ROBOT = 1 << 17
@@ -48,7 +55,7 @@ def priority(kind: int, from_robot: bool) -> int:
     """Return the priority of a kind, 0 being the highest."""
     if kind == SYNC.number:
         return SYNCHRONISE
-    if kind < frames.GREETINGS_BELOW:
+    if kind < frames.GREETINGS_BELOW and kind != STOPPED.number:
         return GREETINGS
     if frames.is_open(kind):
         return TELEMETRY

@@ -63,7 +63,7 @@ class Mcp2515:
         self._second_is_older = False
 
     def accept(self, buffer: int, mask: int, identifiers, extended: bool) -> None:
-        """Have a receive buffer take these identifiers alone, compared under a mask; counts from the next `begin` on."""
+        """Have a receive buffer take these identifiers alone, compared under a mask; counts from `begin` on."""
         self._rows.append((MASKS[buffer], mask, extended))
         for i in range(len(FILTERS[buffer])):
             self._rows.append((FILTERS[buffer][i], identifiers[min(i, len(identifiers) - 1)], extended))
@@ -97,7 +97,7 @@ class Mcp2515:
         self._second_is_older = False
 
     def give_up(self) -> None:
-        """Take back what waits to be sent, and try each frame once only from now on, whether anybody hears it or not."""
+        """Take back what waits to be sent, and try each frame once only from now on, heard or not."""
         self._write(CANCTRL, NORMAL | ONE_SHOT | ABORT)
         self._write(CANCTRL, NORMAL | ONE_SHOT)
 
