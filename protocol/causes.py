@@ -327,6 +327,12 @@ CODES = (
         "The defaults are used; only told.",
         "Set them again with `softrig settings`, and `softrig calibrate`.",
     ),
+    Code(
+        codes.KEY, "F24", "",
+        "The pairing key is damaged, or the number of this start could not be written down.",
+        "No session begins, so that nobody can arm; latched.",
+        "Make a new key with `softrig key new` and put it on the robot with `softrig deploy --key`.",
+    ),
 )  # fmt: skip
 
 

@@ -175,13 +175,20 @@ class Link:
         return True
 
     def _take(self, frame, now_ms: int, delivered: list) -> None:
-        """Take a frame of the session, unless its tag is wrong."""
+        """Take a frame of the session, unless its tag is wrong; one that was heard before says nothing of now."""
+        if self.session == 0:
+            self.foreign += 1
+            return
         number = self._number(frame)
         if self.key:
             number = self._true_number(frame, number)
             if number < 0:
                 self.forged += 1
                 return
+        if frame.flags & frames.RELIABLE and not self._is_new(number):
+            self._ack_due = True
+            self.duplicates += 1
+            return
         self.heard_ms = now_ms
         if frame.kind == ALIVE.number:
             self._take_alive(frame, number, now_ms)
@@ -219,9 +226,6 @@ class Link:
 
     def _take_reliable(self, frame, number: int, delivered: list) -> None:
         self._ack_due = True
-        if not 0 <= number - self._next_receive < WINDOW or number in [ahead[0] for ahead in self._ahead]:
-            self.duplicates += 1
-            return
         self._ahead.append((number, frame))
         while True:
             due = [ahead for ahead in self._ahead if ahead[0] == self._next_receive]
@@ -231,6 +235,12 @@ class Link:
             frame = due[0][1]
             delivered.append(Received(frame.kind, frame.seq, frame.payload))
             self._next_receive += 1
+
+    def _is_new(self, number: int) -> bool:
+        """Return whether a reliable frame of that number may come now, and has not yet."""
+        if not 0 <= number - self._next_receive < WINDOW:
+            return False
+        return number not in [ahead[0] for ahead in self._ahead]
 
     def _take_open(self, frame, delivered: list) -> None:
         if self._next_telemetry is not None:

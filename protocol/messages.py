@@ -35,6 +35,9 @@ ACCEPTED, STEP_DONE = 11, 12
 ROLES = ("viewer", "holder")
 VIEWER, HOLDER = 0, 1
 
+SECURED = ("no", "paired", "damaged")  # the pairing key of a robot
+UNPAIRED, PAIRED, KEY_DAMAGED = 0, 1, 2
+
 PARTS = ("definitions", "help")  # of the dictionary
 DEFINITIONS, HELP = 0, 1
 
@@ -126,7 +129,7 @@ IDENTITY = Message(
     Field("state", "B"),  # State of the robot. [STATES]
     Field("role", "B"),  # What this session may do: only the holder may give orders. [ROLES]
     Field("node", "B"),  # The robot's number on a shared line, 0: none.
-    Field("secured", "B"),  # 1: orders must carry the tag of the pairing key. [0..1]
+    Field("secured", "B"),  # Whether orders must carry tags of a pairing key; one that is damaged lets nobody order. [SECURED]
     Field("slots", "B"),  # Credit to begin with: frames that may wait for their acknowledgement. [0..16]
     Field("bytes", "H"),  # Credit to begin with: bytes of them on the line.
     Field("byte_ns", "I"),  # Time of a byte on the line, 0: not known.
