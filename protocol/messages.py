@@ -129,7 +129,7 @@ IDENTITY = Message(
     Field("state", "B"),  # State of the robot. [STATES]
     Field("role", "B"),  # What this session may do: only the holder may give orders. [ROLES]
     Field("node", "B"),  # The robot's number on a shared line, 0: none.
-    Field("secured", "B"),  # Whether orders must carry tags of a pairing key; one that is damaged lets nobody order. [SECURED]
+    Field("secured", "B"),  # Whether orders must carry tags; with a damaged key there are none. [SECURED]
     Field("slots", "B"),  # Credit to begin with: frames that may wait for their acknowledgement. [0..16]
     Field("bytes", "H"),  # Credit to begin with: bytes of them on the line.
     Field("byte_ns", "I"),  # Time of a byte on the line, 0: not known.
