@@ -5,7 +5,7 @@ and again while the loop rests: it allocates nothing. A stop has a receive buffe
 through a transmit buffer of its own and overtakes telemetry.
 
 There may be nobody on the bus. A robot that has heard nothing for a while, and whom nobody acknowledges, sleeps: it
-looks at the interrupt pin once in a control step, and tries one frame a second, once.
+looks at the interrupt pin once in a control step, and tries a beacon now and then, once.
 
     port = CanPort(Mcp2515(...), Pin(20, Pin.IN), node)
     for taken in port.take(now_ms): ...
@@ -19,7 +19,6 @@ from protocol.canbus import ALL, ANSWERS, FROM_ROBOT, STOP_DATA, STOP_IDENTIFIER
 
 BITRATE_HZ = 500_000
 AWAKE_MS = 2000  # after the last frame that was received, or acknowledged
-PROBE_MS = 1000  # between two tries of a robot that sleeps
 STUCK_MS = 500  # for which frames wait in vain before they are given up
 CHECK_MS = 100
 RECEIVED_MAX, URGENT_MAX, BULK_MAX = 16, 160, 96  # frames
@@ -96,7 +95,7 @@ class CanPort:
         self._received = Ring(RECEIVED_MAX)
         self._urgent, self._bulk = Ring(URGENT_MAX), Ring(BULK_MAX)
         self._heard = self._off = self._probing = False
-        self._lively_ms = self._moved_ms = self._checked_ms = self._probed_ms = 0
+        self._lively_ms = self._moved_ms = self._checked_ms = 0
         chip.accept(0, 0x7FF, (0,), False)
         chip.accept(1, _TO_ROBOT, (node << 10, ALL << 10), True)
         chip.begin(BITRATE_HZ)
@@ -154,12 +153,11 @@ class CanPort:
         for frame in cut:
             ring.add(frame.identifier, frame.data, len(frame.data))
 
-    def tell(self, identifier: int, data: bytes, now_ms: int) -> None:
-        """Send a frame that is no segment, if there is room; a robot that sleeps tries one in a while."""
+    def tell(self, identifier: int, data: bytes) -> None:
+        """Send a frame that is no segment, if there is room; a robot that sleeps tries it once, to hear of others."""
         if self.awake:
             self._bulk.add(identifier, data, len(data))
-        elif now_ms - self._probed_ms >= PROBE_MS:
-            self._probed_ms = now_ms
+        else:
             self._probing = self._is_ready() and self._chip.send(identifier, data, len(data), True)
 
     def _lane(self, identifier: int) -> Ring:

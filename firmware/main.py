@@ -27,7 +27,7 @@ def run(loud: int, is_new: bool, settled) -> None:
             core = Core(board, Profile(file.read()), pico.boot_number(), reset_cause() == WDT_RESET, loud)
         if board.warm():
             core.sense.assume_hot()  # the power was gone, and with it what was known of the coils
-        loop(board, core, Wires(board, board.can(core.records.settings.node)), Trial(is_new, settled))
+        loop(board, core, Wires(board, core, board.can(core.records.settings.node)), Trial(is_new, settled))
     finally:
         board.power(False)
     reset()
@@ -40,9 +40,7 @@ def loop(board: pico.Board, core: Core, wires: Wires, trial: Trial) -> None:
     due = last
     heap = Heap()
     while not (core.may_restart() or trial.over(now_ms, core)):
-        data = wires.read(now_ms)
-        core.link.byte_ns = wires.byte_ns()
-        wires.write(core.step(now_ms, data, wires.room()), core.link.heard_ms == now_ms)
+        wires.step(now_ms)
         core.tasks.report(SEND)
         if core.tasks.complete():
             board.feed()

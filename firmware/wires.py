@@ -4,10 +4,11 @@ Both are listened to at once. What came in by one is given to the core by itself
 any of them without waiting for its turn. Answers to a greeting go where the greeting came from, `stopped` goes
 everywhere, all else goes where the session's last valid frame came from.
 
-    wires = Wires(board, port)
-    wires.write(core.step(now_ms, wires.read(now_ms), wires.room()), core.link.heard_ms == now_ms)
+    wires = Wires(board, core, board.can(node))
+    wires.step(now_ms)
 """
 
+from firmware.beacons import Beacons
 from protocol.canbus import ALL, BYTE_NS
 from protocol.frames import GREETINGS_BELOW, STOP, StopFinder
 from protocol.messages import STOPPED
@@ -18,15 +19,26 @@ SERIAL_MAX = 1024  # bytes that came by the serial line
 
 
 class Wires:
-    """The serial line of `board`, and the CAN bus behind `port`, which may be None."""
+    """The serial line of `board` and the CAN bus behind `port`, or None, with one core at their end."""
 
-    def __init__(self, board, port=None) -> None:
+    def __init__(self, board, core, port) -> None:
         self.port = port
         self._board = board
+        self._core = core
+        self._beacons = Beacons(core, port) if port else None
         self._asker = self._host = SERIAL  # who spoke last, and who holds the session
         self._finder = StopFinder()
         self._serial = b""
         self._taken = []
+
+    def step(self, now_ms: int) -> None:
+        """Let the core take one step with what has arrived, and send what it hands back."""
+        core = self._core
+        data = self.read(now_ms)
+        core.link.byte_ns = self.byte_ns()
+        self.write(core.step(now_ms, data, self.room()), core.link.heard_ms == now_ms)
+        if self._beacons:
+            self._beacons.tell(now_ms)
 
     def read(self, now_ms: int) -> bytes:
         """Return what one source has sent; a stop first, whoever it came from."""

@@ -21,7 +21,7 @@ again; one that comes twice costs nothing.
 from collections import namedtuple
 
 from protocol import frames
-from protocol.messages import STOPPED, SYNC
+from protocol.messages import BEACON, BEACON_COILS, STOPPED, SYNC
 
 ALL = 127  # the node of every robot, and of every host
 NODE_MAX = 126
@@ -29,7 +29,7 @@ HOST = 1  # the node of a host that was not given one
 CLASSIC, FD = 8, 64  # bytes of data in a CAN frame
 STOP_IDENTIFIER, STOP_DATA = 0, b"STOP"  # a standard frame; every other is extended
 FIRST, LAST, COUNTER = 0x80, 0x40, 0x3F
-BEACONS = (0x58, 0x59)  # kinds whose frames are whole and have no segment byte
+BEACONS = (BEACON.number, BEACON_COILS.number)  # kinds whose frames are whole and have no segment byte
 LATE_MS = 100  # between two segments of a body
 GAP_MS = 1  # at least, between two segments to one robot
 WAKE_MS = 6  # at least, after a segment to a robot that heard nothing for SLEEP_MS

@@ -194,7 +194,7 @@ SUBSCRIBE = Message(
     Field("slot", "B"),  # Which of the subscriptions. [0..3]
     Field("period_ms", "H"),  # Between two records, at the least; 0 ends it.
     Field("on_change", "B"),  # 1: only when a value has changed. [0..1]
-    Field("variables", "s"),  # Numbers of the variables, u8 each, in the order of the record.
+    Field("variables", "s"),  # Numbers of the variables, u8 each, in the order of the record; none: the usual ones.
 )  # fmt: skip
 FAULTS_REQUEST = Message(
     0x17, "faults_request",  # Asks for `faults`.
@@ -298,9 +298,27 @@ EVENT = Message(
 TELEMETRY = Message(
     0x50, "telemetry",  # A record of a subscription, not repeated when lost.
     Field("slot", "B"),  # Which of the subscriptions. [0..3]
+    Field("form", "B"),  # 0: the usual variables; else 1 more than the number of the `subscribe` frame, modulo 255.
     Field("count", "B"),  # Number of the record, modulo 256; those that found no room on the line are counted too.
     Field("now_ms", "I"),  # The robot's clock.
-    Field("values", "s"),  # The variables in the order of the subscription; one with a value per coil has all of them.
+    Field("values", "s"),  # The variables in the order of the subscription, one with a value per coil with all of them;
+    # every byte exclusive-ored with 0x55.
+)  # fmt: skip
+BEACON = Message(
+    0x58, "beacon",  # On CAN only, ten times a second to all: a frame by itself, without segment byte, head and CRC.
+    Field("state", "B"),  # State of the robot. [STATES]
+    Field("code", "B"),  # Last fault, see the table of codes; 0: none since boot.
+    Field("step", "H"),  # Step of the program, 0: none.
+    Field("supply_mv", "H"),  # Supply voltage at the coils' rail.
+    Field("current_ma", "H"),  # Supply current.
+)  # fmt: skip
+BEACON_COILS = Message(
+    0x59, "beacon_coils",  # Like `beacon`, every 20 ms: two coils, all of them in turn.
+    Field("group", "B"),  # Half the number of the first channel. [0..15]
+    Field("duty_a_percent", "B"),  # Duty of the first. [0..100]
+    Field("duty_b_percent", "B"),  # Duty of the second, 0 where there is none. [0..100]
+    Field("temperature_a_decidegc", "h"),  # Estimated temperature of the first.
+    Field("temperature_b_decidegc", "h"),  # Estimated temperature of the second, 0 where there is none.
 )  # fmt: skip
 CLOCK = Message(
     0x5E, "clock",  # Answers `clock_request`.
@@ -313,7 +331,8 @@ MESSAGES = (
     HELLO, IDENTITY, DICTIONARY, DICTIONARY_PAGE, STOPPED, NAK, SYNC,
     ALIVE, ARM, DISARM, CLEAR, FIRE, STATUS_REQUEST, SUBSCRIBE,
     FAULTS_REQUEST, CLEAR_FAULTS, SETTINGS_REQUEST, SET, CALIBRATE, COILS_REQUEST, SERVICE, CLOCK_REQUEST,
-    PROGRAM, CODE, START, CANCEL, OK, REFUSED, STATUS, FAULTS, SETTINGS, COILS, EVENT, TELEMETRY, CLOCK,
+    PROGRAM, CODE, START, CANCEL, OK, REFUSED, STATUS, FAULTS, SETTINGS, COILS, EVENT, TELEMETRY,
+    BEACON, BEACON_COILS, CLOCK,
 )  # fmt: skip
 
 
