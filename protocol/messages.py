@@ -156,14 +156,14 @@ DICTIONARY_PAGE = Message(
 STOPPED = Message(
     0x05, "stopped",  # Answers the stop pattern once every coil is off.
     Field("state", "B"),  # State of the robot. [STATES]
-    Field("code", "H"),  # Why it is stopped, see the table of codes.
+    Field("code", "H"),  # Why it is stopped. [CODES]
     Field("coils", "I"),  # Coils that were on when the stop arrived.
     Field("now_ms", "I"),  # The robot's clock.
 )  # fmt: skip
 NAK = Message(
     0x06, "nak",  # An unseeded frame could not be served.
     Field("kind", "B"),  # Kind of the frame.
-    Field("code", "H"),  # Why, see the table of codes.
+    Field("code", "H"),  # Why. [CODES]
     Field("version", "B"),  # Protocol version of the robot.
 )  # fmt: skip
 SYNC = Message(0x07, "sync")  # To all robots that wait for it: start your program now. Never answered.
@@ -185,7 +185,7 @@ CLEAR = Message(0x13, "clear")  # Leaves the tripped state once its cause is gon
 FIRE = Message(
     0x14, "fire",  # Heat coils for a limited time; the order carries its own end.
     Field("coils", "I"),  # Bit mask of channels in the order of the profile.
-    Field("duty_permille", "H"),  # Share of the PWM period that the coils are on; 0 switches them off.
+    Field("duty_permille", "H"),  # Share of the PWM period that they are on; 0: off. [0..1000]
     Field("hold_ms", "H"),  # Off again after this long unless driven anew.
 )  # fmt: skip
 STATUS_REQUEST = Message(0x15, "status_request")  # Asks for `status`.
@@ -204,7 +204,7 @@ CLEAR_FAULTS = Message(0x1B, "clear_faults")  # Forgets the faults that were kep
 SETTINGS_REQUEST = Message(0x19, "settings_request")  # Asks for `settings`.
 SET = Message(
     0x1A, "set",  # Changes a setting and keeps it; refused while the robot is armed.
-    Field("setting", "B"),  # Which, see SETTINGS.
+    Field("setting", "B"),  # Which. [SETTING_NAMES]
     Field("channel", "B"),  # The channel that it belongs to; 255: none.
     Field("value", "i"),  # Its value, in the unit that ends its name.
 )  # fmt: skip
@@ -241,7 +241,7 @@ OK = Message(
 REFUSED = Message(
     0x41, "refused",  # The request was not taken; nothing changed.
     Field("request", "B"),  # Sequence number of the request.
-    Field("code", "H"),  # Why, see the table of codes.
+    Field("code", "H"),  # Why. [CODES]
     Field("channel", "B"),  # The channel it is about, 255: none.
     Field("value", "i"),  # What was asked, in the unit of the limit.
     Field("limit", "i"),  # What is allowed.
@@ -250,7 +250,7 @@ STATUS = Message(
     0x42, "status",  # Answers `status_request`.
     Field("request", "B"),  # Sequence number of the request.
     Field("state", "B"),  # State of the robot. [STATES]
-    Field("code", "H"),  # Last fault, 0: none since boot.
+    Field("code", "H"),  # Last fault, 0: none since boot. [CODES]
     Field("uptime_ms", "I"),  # Time since boot.
     Field("lease_ms", "H"),  # What is left of the lease, 0: none.
     Field("step", "H"),  # Step of the program, 0: none.
@@ -269,27 +269,28 @@ FAULTS = Message(
     Field("request", "B"),  # Sequence number of the request.
     Field("start", "I"),  # Number of this start of the firmware in the records.
     Field("count", "B"),  # How many faults there are.
-    Field("records", "s"),  # Newest first: start u32, now_ms u32, code u16, channel u8 [255: none], value i32,
-    # state u8, cause of that start u8 [1: power-on, 3: reset].
+    Field("records", "s"),  # Newest first. Channel 255: none; cause: of that start, see CAUSES.
+    # [* start:I now_ms:I code:H channel:B value:i state:B cause:B]
 )  # fmt: skip
 SETTINGS = Message(
     0x44, "settings",  # Answers `settings_request`.
     Field("request", "B"),  # Sequence number of the request.
-    Field("source", "B"),  # 0: the defaults, nothing is stored; 1: stored; 2: the defaults, what was stored is damaged.
+    Field("source", "B"),  # What is used: the defaults, unless something whole is stored. [SETTING_SOURCES]
     Field("node", "B"),  # Setting 0: the robot's number on a shared bus.
     Field("board_offset_decidegc", "h"),  # Setting 1: added to what the board's thermometer reads.
-    Field("resistances", "s"),  # Setting 2: per channel the cold coil's resistance u16 [mohm], 0: as in the profile.
+    Field("resistances", "s"),  # Setting 2: of each cold coil; 0: as in the profile. [* resistance_mohm:H]
 )  # fmt: skip
 COILS = Message(
     0x45, "coils",  # Answers `coils_request`: what the resistance of each coil, as measured last, says of it.
     Field("request", "B"),  # Sequence number of the request.
-    Field("channels", "s"),  # Per channel: resistance u16 [10 mohm; 0: not measured], martensite u16 [permille; 65535:
-    # not known], temperature at least i16 and at most i16 [0.1 C; -32768 and 32767: no bound].
+    Field("channels", "s"),  # Of each coil; resistance in 10 mohm, 0: not measured; martensite 65535: not known; its
+    # temperature at least and at most, -32768 and 32767: no bound.
+    # [* resistance_10mohm:H martensite_permille:H least_decidegc:h most_decidegc:h]
 )  # fmt: skip
 EVENT = Message(
     0x4F, "event",  # Something happened; sent once and surely.
     Field("event", "B"),  # What. [EVENTS]
-    Field("code", "H"),  # Why, see the table of codes; 0: in order.
+    Field("code", "H"),  # Why; 0: in order. [CODES]
     Field("step", "H"),  # Step of the program, 0: none.
     Field("channel", "B"),  # The channel it is about, 255: none.
     Field("value", "i"),  # What was measured, in the unit of the code's limit.
