@@ -27,7 +27,7 @@ class Commands:
             (messages.FIRE, self._fire), (messages.STATUS_REQUEST, self._status),
             (messages.SUBSCRIBE, self._subscribe), (messages.PROGRAM, self._program), (messages.CODE, self._piece),
             (messages.START, self._start), (messages.CANCEL, self._cancel), (messages.COILS_REQUEST, self._coils),
-            (messages.CALIBRATE, self._calibrate),
+            (messages.CALIBRATE, self._calibrate), (messages.SERVICE, self._service),
         ) + core.records.orders()  # fmt: skip
 
     def serve(self, received) -> None:
@@ -157,6 +157,11 @@ class Commands:
         core.channels.without_mask = without
         core.control.selftest.begin(without)
         self._arming, self._calibrates = seq, calibrates
+
+    def _service(self, order, seq: int) -> None:
+        if not self._core.at_rest():
+            raise Refused(codes.NOT_WHILE_ARMED)
+        self._core.serve_console()
 
     def _disarm(self, order, seq: int) -> None:
         self._core.disarm()

@@ -9,6 +9,7 @@ from binascii import crc32
 from firmware.commands import Commands
 from firmware.control import Control
 from firmware.greetings import Greetings
+from firmware.pairing import Pairing
 from firmware.player import FINISHED, TIMED_OUT
 from firmware.records import Records
 from firmware.reports import Reports
@@ -18,6 +19,7 @@ from protocol.frames import GREETINGS_BELOW, StopFinder
 from protocol.link import Link
 
 VERSION = b"0.1.0"
+LEAVE_MS = 100  # between the order for the console and the end: its answer is sent, and acknowledged
 UPTIME_MAX_MS = 1 << 29  # six days; a board's small integers end at 2**30
 
 
@@ -38,6 +40,7 @@ class Core:
         self.now_ms = 0
         self._after_reset = after_reset
         self._loud = loud  # a PWM chip that boot.py could not switch off
+        self.pairing = Pairing(board.open)
         self.records = Records(self, messages.RESET if after_reset else messages.POWER_ON)
         self.control = Control(board, profile)
         self.channels, self.sense, self.guard = self.control.channels, self.control.sense, self.control.guard
@@ -52,6 +55,7 @@ class Core:
         self._stop = StopFinder()
         self._armed_ms = 0
         self._attach = 0  # the session that the one on offer would take over from
+        self._leave_ms = -1  # when to make room for the console, -1: never
 
     def step(self, now_ms: int, data: bytes, room: int) -> bytes:
         """Take the bytes that arrived, run one control step, and return the bytes to send: at most `room`."""
@@ -130,11 +134,27 @@ class Core:
         self.reports.event(event, code, 255, value)
         self.player.step = 0
 
-    def offer(self, session: int, attach: int, key: bytes = b"") -> bool:
-        """Have a session begin with its first frame; return whether it may, as things stand."""
-        self._attach = attach
-        self.link.offer(session, key)
-        return session == self.session or self._may_adopt()
+    def offer(self, hello) -> bool:
+        """Have a session begin with its first frame; return whether it may, as things stand.
+
+        That frame must show the pairing key, if there is one; a robot whose key is damaged begins none.
+        """
+        key = self.pairing.offer(hello, self.link.decoder.dictionary_crc)
+        if hello.session == self.session:
+            return True
+        if self.pairing.secured == messages.KEY_DAMAGED:
+            return False
+        self._attach = hello.attach
+        self.link.offer(hello.session, key)
+        return self._may_adopt()
+
+    def serve_console(self) -> None:
+        """Make room for the console soon, once the answer is on its way."""
+        self._leave_ms = self.now_ms + LEAVE_MS
+
+    def leaves(self) -> bool:
+        """Return whether it is time to make room for the console."""
+        return 0 <= self._leave_ms <= self.now_ms
 
     def holder(self) -> int:
         """Return the session that holds the lease, or whose program runs; 0: none."""
@@ -173,6 +193,8 @@ class Core:
             self.trip(codes.CHIP, 255, self._loud)
         if self._after_reset:
             self.trip(codes.WATCHDOG)
+        if not self.pairing.begin():
+            self.trip(codes.KEY)
 
     def _receive(self, data: bytes) -> None:
         if self._stop.feed(data):
@@ -201,6 +223,7 @@ class Core:
             self.lease_ms = 0
         self._attach = 0
         self.session = session
+        self.pairing.session_begun()
         self.commands.forget()
         self.reports.forget()
 

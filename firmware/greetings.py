@@ -44,14 +44,17 @@ class Greetings:
             self._nak(messages.HELLO.number, codes.OTHER_VERSION)
             return
         hello = messages.HELLO.unpack(payload)
-        free = core.offer(hello.session, hello.attach)
+        if hello.session == 0:
+            raise ValueError("session 0 is none")
+        free = core.offer(hello)
+        pairing = core.pairing
         identity = messages.IDENTITY.pack(
             session=hello.session, boot=core.boot, uptime_ms=core.now_ms & 0xFFFFFFFF,
             dictionary_crc=core.link.decoder.dictionary_crc, dictionary_bytes=len(core.dictionary),
             version=frames.VERSION, state=core.state, role=messages.HOLDER if free else messages.VIEWER,
-            node=core.link.node, secured=0, slots=WINDOW, bytes=core.link.grant_bytes, byte_ns=core.link.byte_ns,
-            holder=core.holder(), step=core.player.step, nonce_a=0, nonce_b=0, proof_a=0, proof_b=0,
-            firmware=core.version,
+            node=core.link.node, secured=pairing.secured, slots=WINDOW, bytes=core.link.grant_bytes,
+            byte_ns=core.link.byte_ns, holder=core.holder(), step=core.player.step, nonce_a=pairing.nonce[0],
+            nonce_b=pairing.nonce[1], proof_a=pairing.proof[0], proof_b=pairing.proof[1], firmware=core.version,
         )  # fmt: skip
         core.link.post(messages.IDENTITY.number, identity)
 

@@ -28,6 +28,8 @@ def run(loud: int, is_new: bool, settled) -> None:
         if board.warm():
             core.sense.assume_hot()  # the power was gone, and with it what was known of the coils
         loop(board, core, Wires(board, core, board.can(core.records.settings.node)), Trial(is_new, settled))
+        if core.leaves():
+            raise KeyboardInterrupt  # which start.py takes for Ctrl-C on the console
     finally:
         board.power(False)
     reset()
@@ -39,7 +41,7 @@ def loop(board: pico.Board, core: Core, wires: Wires, trial: Trial) -> None:
     last = time.ticks_ms()
     due = last
     heap = Heap()
-    while not (core.may_restart() or trial.over(now_ms, core)):
+    while not (core.may_restart() or core.leaves() or trial.over(now_ms, core)):
         wires.step(now_ms)
         core.tasks.report(SEND)
         if core.tasks.complete():
