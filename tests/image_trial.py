@@ -114,6 +114,8 @@ class Table:
     """A board on a table top."""
 
     powered = False
+    credit_bytes = 448
+    byte_ns = 86_805
 
     def open(self, path, mode):
         raise OSError(2, "ENOENT")
