@@ -116,6 +116,16 @@ def wall_s() -> float:
     return time.perf_counter()
 
 
+def monotonic_s() -> float:
+    """Return the clock of a line that has none of its own."""
+    return time.monotonic()
+
+
+def pause_until(until_s: float) -> None:
+    """Let time pass on that clock."""
+    time.sleep(max(0.0, until_s - time.monotonic()))
+
+
 class SerialLink:
     """A serial port that is ours alone."""
 
