@@ -6,7 +6,7 @@ anything else. Orders are answered with `ok`, `refused` or their own answer, und
 
 from firmware.channels import Refused
 from firmware.upload import Upload
-from protocol import codes, messages
+from protocol import codes, messages, variables
 
 NOT, ON_SYNC = -1, -2
 FIGURE_MAX = 0x7FFFFFFF  # that the fields of a refusal hold
@@ -177,7 +177,11 @@ class Commands:
         core.channels.fire(order.coils, order.duty_permille, order.hold_ms, core.now_ms)
 
     def _subscribe(self, order, seq: int) -> None:
-        self._core.reports.subscribe(order.slot, order.period_ms)
+        core = self._core
+        numbers = order.variables or bytes(variables.USUAL)
+        core.reports.subscriptions.subscribe(
+            order.slot, order.period_ms, order.on_change != 0, numbers, seq, core.now_ms
+        )  # fmt: skip
 
     def _status(self, order, seq: int) -> bool:
         core = self._core

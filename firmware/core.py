@@ -77,7 +77,10 @@ class Core:
         if self.state == messages.RUNNING:
             self._end_program()
         self.reports.tell()
-        return self.link.poll(now_ms, room)
+        out = self.link.poll(now_ms, room)
+        if self.reports.subscriptions.active:
+            out += self.reports.telemetry(room - len(out))
+        return out
 
     def arm(self, lease_ms: int) -> None:
         """Allow orders while the lease lives: every coil has been tested, and the supply is on."""
@@ -225,7 +228,7 @@ class Core:
         self.session = session
         self.pairing.session_begun()
         self.commands.forget()
-        self.reports.forget()
+        self.reports.subscriptions.forget()
 
     def _end_lease(self) -> None:
         if not (self.state == messages.RUNNING and self.commands.upload.outlives_host):

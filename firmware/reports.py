@@ -2,6 +2,7 @@
 
 import struct
 
+from firmware.subscriptions import Subscriptions
 from protocol import codes, messages
 
 ROOM = 8  # places of the link's queue that events leave to answers
@@ -12,17 +13,10 @@ class Reports:
     """The voice of one core."""
 
     def __init__(self, core) -> None:
-        self.period_ms = 0  # of telemetry, 0: none
+        self.subscriptions = Subscriptions(core)
         self._core = core
         self._player, self._channels, self._attitude = core.player, core.channels, core.attitude
-        self._due_ms = 0
-        self._count = 0
         self._step = 0
-        self._records = bytearray(4 * core.channels.count)
-
-    def forget(self) -> None:
-        """End every subscription: nobody is left who asked for it."""
-        self.period_ms = 0
 
     def clock(self, payload: bytes) -> None:
         """Answer a question for the clock."""
@@ -49,7 +43,7 @@ class Reports:
             core.link.send(messages.EVENT.number, payload, core.now_ms)
 
     def tell(self) -> None:
-        """Send what the control step left to tell: a step, coils cut off, a lost sensor, telemetry that is due."""
+        """Send what the control step left to tell: a step, coils cut off, a lost sensor."""
         if self._player.step != self._step:
             self.step_done()
             self._step = self._player.step
@@ -60,9 +54,16 @@ class Reports:
         if self._attitude.lost:
             self._attitude.lost = False
             self.event(messages.LOST, codes.ATTITUDE)
-        if self.period_ms and self._core.now_ms - self._due_ms >= 0:
-            self._due_ms = self._core.now_ms + self.period_ms
-            self._core.link.post(messages.TELEMETRY.number, self._telemetry(self._core))
+
+    def telemetry(self, room: int) -> bytes:
+        """Return the frames of the records that are due, as far as there is room for them."""
+        link, now_ms, out = self._core.link, self._core.now_ms, b""
+        while True:
+            record = self.subscriptions.record(now_ms, room - len(out))
+            if not record:
+                return out
+            link.post(messages.TELEMETRY.number, record)
+            out += link.poll(now_ms, room - len(out))
 
     def step_done(self) -> None:
         """Tell that the step told last has ended: all its ops have run, or the program has ended."""
@@ -85,27 +86,6 @@ class Reports:
             if core.channels.cut_off_mask >> channel & 1:
                 self.event(messages.CUT_OFF, 0, channel, core.sense.temperature_millidegc[channel] // 100)
         core.channels.cut_off_mask = 0
-
-    def subscribe(self, slot: int, period_ms: int) -> None:
-        """Send telemetry at that period; 0 ends it."""
-        self.period_ms = period_ms
-
-    def _telemetry(self, core) -> bytes:
-        records = self._records
-        for channel in range(core.channels.count):
-            duty = core.channels.duty_permille[channel]
-            temperature = core.sense.temperature_millidegc[channel] // 100
-            records[4 * channel] = duty & 0xFF
-            records[4 * channel + 1] = duty >> 8
-            records[4 * channel + 2] = temperature & 0xFF
-            records[4 * channel + 3] = temperature >> 8 & 0xFF
-        values = struct.pack(
-            "<BHHHhhhB", core.state, core.player.step, core.sense.supply_mv, core.sense.current_ma,
-            core.sense.board_decidegc, core.attitude.roll_decideg(), core.attitude.pitch_decideg(),
-            core.attitude.down_channel(),
-        )  # fmt: skip
-        self._count = (self._count + 1) & 255
-        return messages.TELEMETRY.pack(slot=0, count=self._count, now_ms=self._now(), values=values + bytes(records))
 
     def _now(self) -> int:
         return self._core.now_ms & 0xFFFFFFFF

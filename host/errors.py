@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from protocol import causes, codes
 
-LOWER_BOUNDS = (codes.SUPPLY_LOW, codes.COIL_SHORT)  # their limit is what should have been reached
+LOWER_BOUNDS = (codes.SUPPLY_LOW, codes.COIL_SHORT, codes.PERIOD_LIMIT)  # their limit is what should have been reached
 NONE = 255  # channel number of an answer that is about no channel
 
 

@@ -6,11 +6,10 @@ except temperatures, which are whole degrees and tenths.
 
 from __future__ import annotations
 
-import struct
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from protocol import messages, program
+from protocol import messages, program, variables
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,29 +75,48 @@ class Status:
     down: str | None = None
 
 
-Record = Telemetry | Event | Stopped
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """Other variables than the usual ones, by name, as protocol/variables.py has them; those per coil by label."""
+
+    host_ms: int
+    now_ms: int
+    slot: int
+    values: dict[str, Any]
 
 
-def telemetry_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Telemetry:
-    """Return the record of that payload; ValueError when it is none."""
-    row = messages.TELEMETRY.unpack(payload)
-    try:
-        numbers = struct.unpack(f"<BHHHhhhB{'Hh' * len(labels)}", row.values)
-    except struct.error as error:
-        raise ValueError(f"telemetry: {error}") from None
-    state, step, supply_mv, current_ma, board_decidegc, roll_decideg, pitch_decideg, down = numbers[:8]
+Record = Telemetry | Sample | Event | Stopped
+
+
+def telemetry_of(values: list[Any], labels: tuple[str, ...], host_ms: int, now_ms: int) -> Telemetry:
+    """Return the record of the usual variables."""
+    state, step, supply_mv, current_ma, board_decidegc, roll_decideg, pitch_decideg, down, duties, decidegcs = values
     return Telemetry(
         host_ms,
-        row.now_ms,
+        now_ms,
         state_name(state),
         step,
         supply_mv,
         current_ma,
         board_decidegc / 10,
-        numbers[8::2],
-        tuple([decidegc / 10 for decidegc in numbers[9::2]]),
+        duties,
+        tuple([decidegc / 10 for decidegc in decidegcs]),
         **_attitude(roll_decideg, pitch_decideg, down, labels),
     )
+
+
+def sample_of(
+    slot: int, numbers: tuple[int, ...], values: list[Any], labels: tuple[str, ...], host_ms: int, now_ms: int
+) -> Sample:
+    """Return the record of these variables; a state is told by its name."""
+    named: dict[str, Any] = {}
+    for number, value in zip(numbers, values, strict=True):
+        name, letter = variables.VARIABLES[number]
+        if letter.endswith("*"):
+            named[name] = dict(zip(labels, value, strict=True))
+        else:
+            named[name] = state_name(value) if name == "state" else value
+    return Sample(host_ms, now_ms, slot, named)
 
 
 def event_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Event:

@@ -20,6 +20,7 @@ from host.kept import Fault, FaultPage, Settings
 from host.link import Link
 from host.profile import Profile
 from host.records import Event, Record, Status, Stopped, Telemetry
+from host.selections import numbers_of
 from host.session import Answer, Session
 from protocol import causes, codes, messages
 
@@ -198,9 +199,16 @@ class Robot:
         broken = self.profile.mask(without)
         self._order(messages.CALIBRATE, session=self._session.number, without=broken)
 
-    def subscribe(self, period_ms: int) -> None:
-        """Have telemetry sent at that period; 0 ends it."""
-        self._order(messages.SUBSCRIBE, slot=0, period_ms=period_ms, on_change=0, variables=b"")
+    def subscribe(
+        self, period_ms: int, variables: Iterable[str] | None = None, on_change: bool = False, slot: int = 0
+    ) -> None:
+        """Have variables sent at that period, as Telemetry, or as Sample if they are named; 0 ends it.
+
+        On change: only when one of them is another than before, and at that distance at least. Each of the four slots
+        has its own.
+        """
+        named = b"" if variables is None else numbers_of(variables)
+        self._order(messages.SUBSCRIBE, slot=slot, period_ms=period_ms, on_change=int(on_change), variables=named)
 
     def upload(self, header: bytes, code: bytes, progress: Callable[[int], None] | None = None) -> None:
         """Send a compiled program; `progress` is told how many bytes have been taken."""

@@ -37,9 +37,9 @@ from host.records import (
     state_name,
     status_of,
     stopped_of,
-    telemetry_of,
 )
 from host.robotclock import RobotClock, since
+from host.selections import Selection, Selections, selection_of
 from protocol import codes, frames, messages
 from protocol.link import Link
 
@@ -61,7 +61,7 @@ class Asked(NamedTuple):
 
     name: str
     at_ms: int
-    period_ms: int  # of the telemetry that it asks for
+    selection: Selection | None  # of the telemetry that it asks for
 
 
 class Session:
@@ -84,7 +84,8 @@ class Session:
         self._event_ms: int | None = None  # the robot's clock in its last event
         self._stopping = False
         self._stop_due_ms = 0
-        self._period_ms = 0
+        self._selections = Selections()
+        self._periods_ms: dict[int, int] = {}  # of telemetry, by slot
         self._written_ms = self._probed_ms = now_ms
         self._read_ms = now_ms  # when the line was last read: what arrives now was not there then
         self._bytes_in = self._bytes_out = self._damaged_before = 0
@@ -113,7 +114,10 @@ class Session:
         except ValueError as error:
             raise BadRequest(str(error)) from error
         seq: int = self._link.send(message.number, payload, now_ms)
-        self._asked[seq] = Asked(message.name, now_ms, values.get("period_ms", 0))
+        selection = selection_of(values) if message is messages.SUBSCRIBE else None
+        if selection:
+            self._selections.ask(seq, selection)
+        self._asked[seq] = Asked(message.name, now_ms, selection)
         return seq
 
     def room(self) -> int:
@@ -179,10 +183,14 @@ class Session:
             "bytes_received": self._bytes_in,
             "frames_resent": link.resent,
             "frames_repeated": link.duplicates,
-            "telemetry_missed": link.missed,
+            "telemetry_missed": sum(self._selections.missed().values()),
             "frames_damaged": link.decoder.dropped - self._damaged_before,
             "round_trip_ms": link.rtt_ms,
         }
+
+    def missed(self) -> dict[int, int]:
+        """Return how many records of telemetry did not come, by slot."""
+        return self._selections.missed()
 
     def _take(self, kind: int, payload: bytes, now_ms: int) -> Record | None:
         """Take one delivered frame; a payload that does not fit its message is dropped like a damaged frame."""
@@ -195,10 +203,15 @@ class Session:
     def _understood(self, kind: int, payload: bytes, now_ms: int) -> Record | None:
         labels = self.profile.labels if self.profile else ()
         if kind == messages.TELEMETRY.number:
-            self.last = telemetry_of(payload, labels, now_ms)
+            told = self._selections.take(payload, labels, now_ms)
+            if told is None:
+                return None
             self._told_ms = now_ms
-            self._compare(self.last.now_ms, self._expected_ms(self._read_ms, LATE_MS), self.last.state, now_ms)
-            return self.last
+            state = told.state if isinstance(told, Telemetry) else str(told.values.get("state", ""))
+            self._compare(told.now_ms, self._expected_ms(self._read_ms, LATE_MS), state, now_ms)
+            if isinstance(told, Telemetry):
+                self.last = told
+            return told
         if kind == messages.EVENT.number:
             return self._happened(event_of(payload, labels, now_ms), now_ms)
         if kind == messages.STOPPED.number:
@@ -254,8 +267,8 @@ class Session:
     def _granted(self, asked: Asked) -> None:
         if asked.name == messages.ARM.name:
             self.holds_lease = True
-        elif asked.name == messages.SUBSCRIBE.name:
-            self._period_ms = asked.period_ms
+        elif asked.selection:
+            self._periods_ms[asked.selection.slot] = asked.selection.silence_ms
 
     def _introduce(self, kind: int, payload: bytes, now_ms: int) -> None:
         """Take an unseeded frame: the answers to hello and dictionary, or to the probe of a silent line."""
@@ -329,7 +342,8 @@ class Session:
         if not heard:
             return self._unanswered_ms()
         quiet_ms = self._read_ms - max(heard)
-        missing_ms = quiet_ms - max(0, 2 * self._period_ms - PROBE_MS) if self._period_ms else 0
+        period_ms = min((each for each in self._periods_ms.values() if each), default=0)
+        missing_ms = quiet_ms - max(0, 2 * period_ms - PROBE_MS) if period_ms else 0
         return max(missing_ms, min(quiet_ms, self._unanswered_ms()))
 
     def _lost(self, how: str) -> LinkLost:

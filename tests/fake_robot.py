@@ -12,7 +12,7 @@ import struct
 from pathlib import Path
 
 from host.errors import LinkLost
-from protocol import frames, messages
+from protocol import frames, messages, variables
 from protocol.link import Link
 
 PROFILE = (Path(__file__).parents[1] / "firmware/robots/circular.json").read_bytes()
@@ -61,7 +61,7 @@ class FakeRobot:
             self._stopped(now_ms)
         delivered = self.link.receive(data, now_ms)
         if self.link.session != self.session:
-            self.session, self.period_ms = self.link.session, 0
+            self.session, self.period_ms, self.count = self.link.session, 0, 0
         for received in delivered:
             self._serve(received, now_ms)
         self._go_on(now_ms)
@@ -138,14 +138,14 @@ class FakeRobot:
 
     def telemetry(self, late_ms: int = 0) -> None:
         """Send telemetry, or what is that late."""
-        words = [word for duty in self.duty for word in (duty, 250 + duty)]
-        values = struct.pack(
-            f"<BHHHhhhB{'Hh' * len(LABELS)}",
-            self.state, 0, self.supply_mv, 0, 231, *self.attitude.values(), *words,
-        )  # fmt: skip
-        self.count = (self.count + 1) & 255
+        degrees = [250 + duty for duty in self.duty]
+        values = variables.veiled(struct.pack(
+            variables.layout(variables.USUAL, len(LABELS)),
+            self.state, 0, self.supply_mv, 0, 231, *self.attitude.values(), *self.duty, *degrees,
+        ))  # fmt: skip
         now_ms = (self.uptime_ms - late_ms) & 0xFFFFFFFF
-        self._post(messages.TELEMETRY, slot=0, count=self.count, now_ms=now_ms, values=values)
+        self._post(messages.TELEMETRY, slot=0, form=0, count=self.count, now_ms=now_ms, values=values)
+        self.count = (self.count + 1) & 255
 
     def _hello(self, order) -> None:
         self.link.offer(order.session)

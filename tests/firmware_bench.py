@@ -9,7 +9,7 @@ from pathlib import Path
 
 from firmware.core import Core
 from firmware.profile import Profile
-from protocol import frames, messages, program
+from protocol import frames, messages, program, variables
 from protocol.link import Link
 
 PROFILE = Path(__file__).parent.parent / "firmware" / "robots" / "circular.json"
@@ -289,6 +289,11 @@ class Rig:
     def events(self, name: str):
         """Return the events of that name that arrived so far."""
         return [body for kind, body in self.got if kind == "event" and messages.EVENTS[body.event] == name]
+
+
+def usual(telemetry, coils: int = 8) -> list:
+    """Return the usual variables of a record of telemetry."""
+    return variables.unpack(variables.USUAL, variables.veiled(telemetry.values), coils)
 
 
 def refusal(answers):

@@ -163,7 +163,7 @@ def test_a_broken_thermistor_is_not_believed(rig, fault):
 
 def test_a_flood_of_requests_is_answered_in_whole_frames_and_makes_no_step_late(rig):
     """What does not fit the transmit buffer is lost on the board: answers wait for the line's room instead."""
-    rig.robot.subscribe(1)
+    rig.robot.subscribe(5)
     on_s = rig.fire("A", duty_percent=30, hold_s=1)
     page = DICTIONARY.pack(part=0, offset=0, count=200)
     flood = frames.encode(frames.seal(DICTIONARY.number, 0, 0, page, 0, 0)) * 100
