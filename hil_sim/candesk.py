@@ -1,16 +1,17 @@
 """Several robots and hosts on one CAN bus and one clock, in lock-step.
 
-    desk = CanDesk("circular@1,sphere-b@2?slope=10")
+    desk = CanDesk(addresses("circular@1,sphere-b@2?slope=10"))
     host = desk.host(500_000)
     host.send(Frame(0x123, b"hello"))
     desk.clock.run_until(200_000)
     desk.benches[2].observe()
-    desk.leave(host)                # with the last host the robots go, too
+    desk.close()
 
 Each part of a channel is an address as after `sim:`; a robot without a number gets the lowest that is free. A comma
 after a question mark belongs to the options, unless an @ or another question mark follows before the next comma.
 """
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from hil_sim.address import NODE_MAX, Address, AddressError, parse
@@ -27,14 +28,14 @@ BOOTED_US = 100_000  # the robots have been on for a moment when a host finds th
 class CanDesk:
     """Robots by their numbers; ValueError, LookupError or OSError say in their text why one cannot be built."""
 
-    def __init__(self, channel: str) -> None:
-        self.channel = channel
+    def __init__(self, wanted: Sequence[Address] = ()) -> None:
+        self.channel = ",".join(f"{address.robot}@{address.node or 1}" for address in wanted)
         self.clock = Clock()
         self.wire = CanWire(self.clock)
         self.benches: dict[int, Bench] = {}
         self._hosts: list[CanHost] = []
         try:
-            self._build(addresses(channel))
+            self._build(wanted)
         except BaseException:
             self.close()
             raise
@@ -45,13 +46,11 @@ class CanDesk:
         self._hosts.append(host)
         return host
 
-    def leave(self, host: CanHost) -> None:
-        """Take a host off the bus; the last one closes the desk."""
-        if host in self._hosts:
-            self._hosts.remove(host)
-            self.wire.leave(host)
-            if not self._hosts:
-                self.close()
+    def leave(self, host: CanHost) -> int:
+        """Take a host off the bus; return how many are left."""
+        self._hosts.remove(host)
+        self.wire.leave(host)
+        return len(self._hosts)
 
     def run(self, until_us: int, host: CanHost) -> None:
         """Let time pass up to then, or until `host` has something to take."""
@@ -69,11 +68,11 @@ class CanDesk:
     def _stop(self) -> None:
         self.clock.stop_at(self.clock.now_us)
 
-    def _build(self, wanted: list[Address]) -> None:
+    def _build(self, wanted: Sequence[Address]) -> None:
         from hil_sim.assembly import assemble  # noqa: PLC0415  (heavy: the compiled physics)
 
         for address in wanted:
-            self.benches[address.node] = assemble(address, self.clock, self.wire)
+            self.benches[address.node or 1] = assemble(address, self.clock, self.wire)
         self.clock.run_until(BOOTED_US)
         for number, bench in self.benches.items():
             if bench.crashes:

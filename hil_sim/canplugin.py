@@ -19,7 +19,7 @@ from can.broadcastmanager import CyclicSendTaskABC
 from can.typechecking import AutoDetectedConfig, CanFilters
 
 from hil_sim.bench import Bench
-from hil_sim.candesk import CanDesk
+from hil_sim.candesk import CanDesk, addresses
 from hil_sim.canmessages import frame_of, message_of
 from hil_sim.canperiodic import PeriodicTask
 from hil_sim.interrupts import interrupts_deferred
@@ -50,7 +50,7 @@ class SoftrigBus(BusABC):
         self._open = True
         try:
             with interrupts_deferred(None):
-                self.desk = desk or CanDesk(channel or "")
+                self.desk = desk or CanDesk(addresses(channel or ""))
             self._host = self.desk.host(int(bitrate), listen_only, int(data_bitrate) if fd else 0)
         except (ValueError, LookupError, OSError, ArithmeticError) as error:
             raise CanInitializationError(str(error)) from error
@@ -114,7 +114,8 @@ class SoftrigBus(BusABC):
         super().shutdown()
         if self._open:
             self._open = False
-            self.desk.leave(self._host)
+            if not self.desk.leave(self._host):
+                self.desk.close()
 
     def _next(self) -> Message | None:
         while (happened := self._host.take()) is not None:

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import json
-import signal
-from collections.abc import Callable
-from contextlib import ExitStack
 from math import isnan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -14,7 +11,7 @@ import click
 
 if TYPE_CHECKING:
     from hil_sim.address import Address
-    from hil_sim.bench import Bench
+    from hil_sim.candesk import CanDesk
 
 
 class NoRobot(click.ClickException):
@@ -40,6 +37,13 @@ class Speed(click.FloatRange):
 @click.option("--tcp", type=click.IntRange(0, 65_535), help="Listen on 127.0.0.1 too; 0 takes any free port.")
 @click.option("--listen", metavar="ADDRESS", help="Where --tcp listens, if others may come: needs a key.")
 @click.option("--key", type=click.Path(dir_okay=False), help="Give the robot the pairing key in this file.")
+@click.option(
+    "--can",
+    "cans",
+    multiple=True,
+    metavar="slcan[=LINK]|socketcand[=PORT]",
+    help="Serve the CAN bus, too; may be given several times.",
+)
 @click.option("--speed", type=Speed(0.01, 100), default=1.0, help="Virtual seconds in one real second.")
 @click.option("--seed", type=click.IntRange(0, 2**32 - 1), help="Identity of the run.")
 @click.option("--slope", type=float, help="Slope of the ground in degrees, uphill positive.")
@@ -51,35 +55,40 @@ def sim(
     tcp: int | None,
     listen: str | None,
     key: str | None,
+    cans: tuple[str, ...],
     speed: float,
     seed: int | None,
     slope: float | None,
     faults: str | None,
     as_json: bool,
 ) -> None:
-    """Run a robot on the bench behind a serial port, in real time.
+    """Run robots on the bench, each behind a serial port, in real time.
 
-    NAME is a robot of the bench or the path of a robot file, with options as in an address: circular?mu=0.1.
+    NAME is a robot of the bench or the path of a robot file, with options as in an address: circular?mu=0.1. Several
+    share a CAN bus: circular@1,sphere-b@2, each with its number there.
     Prints where it listens; Ctrl-C ends it and prints what was observed.
     """
-    from hil_sim.link import BOOTED_US  # noqa: PLC0415
     from hil_sim.ports import PortError  # noqa: PLC0415
+    from hil_sim.serving import Serving  # noqa: PLC0415
     from hil_sim.soundness import CameApart  # noqa: PLC0415
 
-    address = _address(name, seed, slope, faults, key)
+    buses = [_can_port(text) for text in cans]
+    wanted = _addresses(name, bool(cans), seed, slope, faults, key)
     if listen and tcp is None:
         raise click.UsageError("--listen says where a TCP port listens: add --tcp PORT")
-    place = None if tcp is None else (_listening(listen, address), tcp)
-    bench = _bench(address)
+    place = None if tcp is None else (_listening(listen, wanted[0]), tcp)
+    desk = _desk(wanted)
     try:
-        bench.clock.run_until(BOOTED_US)
-        _serve(bench, name, link, place, speed, as_json)
+        with Serving(name, desk, link, place) as serving:
+            for kind, argument in buses:
+                serving.can(kind, argument)
+            serving.run(speed, lambda fields, text: _say(as_json, fields, text))
     except PortError as error:
         raise NoRobot(str(error)) from error
     except CameApart as error:
         raise click.ClickException(str(error)) from error
     finally:
-        bench.close()
+        desk.close()
 
 
 @click.command()
@@ -99,17 +108,34 @@ def robots(as_json: bool) -> None:
         _say(as_json, fields, f"{address:13} {len(labels):2} coils  {robot.about}\n{coils}")
 
 
-def _address(name: str, seed: int | None, slope: float | None, faults: str | None, key: str | None) -> Address:
+def _addresses(
+    name: str, on_can: bool, seed: int | None, slope: float | None, faults: str | None, key: str | None
+) -> list[Address]:
+    """Return the robots of a name; a single one that is on no bus stays without a number."""
     from hil_sim.address import AddressError, parse  # noqa: PLC0415
+    from hil_sim.candesk import addresses  # noqa: PLC0415
 
     try:
-        address = parse(name)
+        wanted = addresses(name) if on_can or "," in name.partition("?")[0] or "@" in name else [parse(name)]
     except AddressError as error:
         raise click.UsageError(str(error)) from error
-    _override(address, seed, slope)
-    address.faults = faults or address.faults
-    address.key = key or address.key
-    return address
+    if faults and len(wanted) > 1:
+        raise click.UsageError("--faults is for one robot: write faults=FILE as an option of the one that is meant")
+    for address in wanted:
+        _override(address, seed, slope)
+        address.faults = faults or address.faults
+        address.key = key or address.key
+    return wanted
+
+
+def _can_port(text: str) -> tuple[str, str]:
+    """Return the kind of a port of the CAN bus, and where it is to be."""
+    kind, equals, place = text.partition("=")
+    if kind not in ("slcan", "socketcand") or (equals and not place):
+        raise click.UsageError(f"--can {text}: write slcan, slcan=LINK, socketcand or socketcand=PORT")
+    if kind == "socketcand" and place and not (place.isdecimal() and int(place) < 65_536):
+        raise click.UsageError(f"--can {text}: a TCP port is a number up to 65535, 0 takes any free one")
+    return kind, place
 
 
 def _listening(listen: str | None, address: Address) -> str:
@@ -127,19 +153,17 @@ def _listening(listen: str | None, address: Address) -> str:
     return str(place)
 
 
-def _bench(address: Address) -> Bench:
+def _desk(wanted: list[Address]) -> CanDesk:
+    from hil_sim.candesk import CanDesk  # noqa: PLC0415
+
     try:
-        return _assembled(address)
+        return CanDesk(wanted)
     except LookupError as error:
         raise NoRobot(str(error)) from error
     except ValueError as error:
         raise click.UsageError(str(error)) from error
-
-
-def _assembled(address: Address) -> Bench:
-    from hil_sim.assembly import assemble  # noqa: PLC0415
-
-    return assemble(address)
+    except OSError as error:
+        raise click.ClickException(str(error)) from error
 
 
 def _override(address: Address, seed: int | None, slope: float | None) -> None:
@@ -151,46 +175,5 @@ def _override(address: Address, seed: int | None, slope: float | None) -> None:
         address.overrides[SHORT["slope"]] = str(slope)
 
 
-def _serve(
-    bench: Bench, name: str, link: Path | None, tcp: tuple[str, int] | None, speed: float, as_json: bool
-) -> None:
-    from hil_sim.announcement import Announcement  # noqa: PLC0415
-    from hil_sim.ports import Pace, Port, Pty, Tcp, serve  # noqa: PLC0415
-
-    with ExitStack() as stack:
-        pty = stack.enter_context(Pty(link))
-        ports: list[Port] = [pty]
-        where: dict[str, Any] = {"robot": name, "pty": pty.path, "link": str(link.absolute()) if link else None}
-        if tcp is not None:
-            server = stack.enter_context(Tcp(tcp[1], tcp[0]))
-            ports.append(server)
-            where["tcp"] = f"socket://{f'[{tcp[0]}]' if ':' in tcp[0] else tcp[0]}:{server.port}"
-        ended = _until_a_signal(stack)
-        stack.enter_context(Announcement(where))
-        places = ", ".join(str(where[key]) for key in ("link", "pty", "tcp") if where.get(key))
-        _say(as_json, {"event": "listening", **where, "speed": speed}, f"{name} listens on {places}; Ctrl-C ends it")
-        pace = Pace(speed)
-        serve(bench, ports, pace, ended)
-        seen = {**bench.observe(), "slipped_s": round(pace.slipped_s, 3)}
-    _say(as_json, {"event": "observed", **seen}, "\n".join(f"{key}: {_short(value)}" for key, value in seen.items()))
-
-
-def _until_a_signal(stack: ExitStack) -> Callable[[], bool]:
-    """Return a function that says whether the operator has ended the bench; handlers are put back with the stack."""
-    came: list[int] = []
-    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        before = signal.signal(number, lambda number, _: came.append(number))
-        stack.callback(signal.signal, number, before)
-    return lambda: bool(came)
-
-
 def _say(as_json: bool, fields: dict[str, Any], text: str) -> None:
     click.echo(json.dumps(fields, default=float) if as_json else text)
-
-
-def _short(value: Any) -> str:
-    if isinstance(value, float):
-        return f"{value:.4g}"
-    if isinstance(value, dict):
-        return " ".join(f"{key}={_short(item)}" for key, item in value.items())
-    return str(value)

@@ -4,7 +4,7 @@ Pacing is a wrapper around virtual time: the bench never learns of it, and bytes
 the virtual line makes them. When this process is held up, virtual time waits with it; it never jumps to catch up.
 
     with Pty(link=Path("robot")) as pty:
-        serve(bench, [pty], Pace(speed=1.0), ended)
+        serve(bench.clock, [SerialEnd(bench, [pty])], Pace(speed=1.0), ended)
 """
 
 import os
@@ -19,6 +19,7 @@ from types import TracebackType
 from typing import Protocol, Self
 
 from hil_sim.bench import Bench
+from hil_sim.clock import Clock
 
 STALL_S = 0.020
 TICK_S = 0.001
@@ -65,19 +66,45 @@ class Pace:
         return whole_us
 
 
-def serve(bench: Bench, ports: Sequence[Port], pace: Pace, ended: Callable[[], bool]) -> None:
-    """Run the bench in step with the wall clock between its ports until `ended` says so."""
-    line = bench.board.uart
+class End(Protocol):
+    """Where the bench meets the world outside."""
+
+    def handles(self) -> list[int]:
+        """Return the file descriptors that may become readable."""
+
+    def exchange(self) -> None:
+        """Take in what has come, and pass on what the bench has to say."""
+
+
+def serve(clock: Clock, ends: Sequence[End], pace: Pace, ended: Callable[[], bool]) -> None:
+    """Run the benches of a clock in step with the wall clock until `ended` says so."""
     while not ended():
-        select.select([handle for port in ports for handle in port.handles()], [], [], TICK_S)
-        bench.clock.run_until(bench.clock.now_us + pace.passed_us())
-        for port in ports:
+        select.select([handle for end in ends for handle in end.handles()], [], [], TICK_S)
+        clock.run_until(clock.now_us + pace.passed_us())
+        for end in ends:
+            end.exchange()
+
+
+class SerialEnd:
+    """The serial line of a bench, with ports at its other end."""
+
+    def __init__(self, bench: Bench, ports: Sequence[Port]) -> None:
+        self._bench = bench
+        self._ports = ports
+
+    def handles(self) -> list[int]:
+        """Return those of the ports."""
+        return [handle for port in self._ports for handle in port.handles()]
+
+    def exchange(self) -> None:
+        """Move bytes both ways."""
+        for port in self._ports:
             data = port.read()
             if data:
-                bench.board.host_write(data)
-        data = line.host_read(bench.clock.now_us)
+                self._bench.board.host_write(data)
+        data = self._bench.board.uart.host_read(self._bench.clock.now_us)
         if data:
-            for port in ports:
+            for port in self._ports:
                 port.write(data)
 
 
@@ -119,7 +146,18 @@ class Pty:
         try:
             os.write(self._near, data)
         except BlockingIOError:
-            termios.tcflush(self._far, termios.TCIFLUSH)
+            self.forget()
+
+    def offer(self, data: bytes) -> int:
+        """Let the host read as much of `data` as there is room for; return how much that is."""
+        try:
+            return os.write(self._near, data)
+        except BlockingIOError:
+            return 0
+
+    def forget(self) -> None:
+        """Drop what waits to be read."""
+        termios.tcflush(self._far, termios.TCIFLUSH)
 
     def close(self) -> None:
         """Take the terminal and its link away."""
@@ -142,15 +180,7 @@ class Tcp:
     """
 
     def __init__(self, port: int, address: str = LOOPBACK) -> None:
-        self._listener = socket.socket(socket.AF_INET6 if ":" in address else socket.AF_INET, socket.SOCK_STREAM)
-        self._listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            self._listener.bind((address, port))
-        except OSError as error:
-            self._listener.close()
-            raise PortError(f"TCP port {port}: {error.strerror}") from error
-        self._listener.listen(1)
-        self._listener.setblocking(False)
+        self._listener = listening(port, address)
         self._host: socket.socket | None = None
         self.port: int = self._listener.getsockname()[1]
 
@@ -215,6 +245,20 @@ class Tcp:
 
     def __exit__(self, kind: type | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self.close()
+
+
+def listening(port: int, address: str = LOOPBACK) -> socket.socket:
+    """Return a socket that listens there and never blocks; PortError when it cannot. `port` 0 takes any free one."""
+    listener = socket.socket(socket.AF_INET6 if ":" in address else socket.AF_INET, socket.SOCK_STREAM)
+    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        listener.bind((address, port))
+    except OSError as error:
+        listener.close()
+        raise PortError(f"TCP port {port}: {error.strerror}") from error
+    listener.listen(1)
+    listener.setblocking(False)
+    return listener
 
 
 def _check_link(link: Path | None) -> None:

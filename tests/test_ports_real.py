@@ -15,7 +15,7 @@ import pytest
 import serial
 
 from hil_sim.announcement import Announcement, announcements
-from hil_sim.ports import Pace, PortError, Pty, Tcp, serve
+from hil_sim.ports import Pace, PortError, Pty, SerialEnd, Tcp, serve
 from tests.bench_fakes import bench_of
 
 PATIENCE_S = 30
@@ -42,7 +42,7 @@ def served(tmp_path):
             bench = bench_of(tmp_path, ECHO)
             bench.run(0.1)
             booted.set()
-            serve(bench, ports, Pace(1.0), ended.is_set)
+            serve(bench.clock, [SerialEnd(bench, ports)], Pace(1.0), ended.is_set)
             bench.close()
 
         thread = threading.Thread(target=work)
