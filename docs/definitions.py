@@ -14,9 +14,11 @@ from functools import cached_property
 
 from docs import meanings
 from protocol import causes, frames, messages
+from protocol.variables import VARIABLES
 
 TYPES = {
-    "B": ("u8", 1), "b": ("i8", 1), "H": ("u16", 2), "h": ("i16", 2), "I": ("u32", 4), "i": ("i32", 4), "s": ("rest", 0),
+    "B": ("u8", 1), "b": ("i8", 1), "H": ("u16", 2), "h": ("i16", 2), "I": ("u32", 4), "i": ("i32", 4),
+    "s": ("rest", 0),
 }  # fmt: skip
 UNITS = {
     "us": ("us", 1), "ms": ("ms", 1), "ns": ("ns", 1), "mv": ("mV", 1), "ma": ("mA", 1), "mohm": ("mohm", 1),
@@ -44,12 +46,12 @@ class Place:
     @property
     def type(self) -> str:
         """Return its type in words, `rest` for what is left of the payload."""
-        return TYPES[self.letter][0]
+        return TYPES[self.letter[0]][0]
 
     @property
     def size(self) -> int:
         """Return its bytes, 0 for `rest`."""
-        return TYPES[self.letter][1]
+        return TYPES[self.letter[0]][1]
 
     @property
     def unit(self) -> str:
@@ -62,16 +64,21 @@ class Place:
         return UNITS.get(self.name.rpartition("_")[2], ("", 1))[1]
 
     @property
+    def signed(self) -> bool:
+        """Return whether it is a signed number."""
+        return self.letter[0] in "bhi"
+
+    @property
     def low(self) -> int:
         """Return the least value that it may have."""
-        bits = 8 * self.size
-        return self.limit[0] if self.limit else -(1 << bits - 1) if self.letter.islower() and bits else 0
+        if self.limit:
+            return self.limit[0]
+        return -(1 << 8 * self.size - 1) if self.signed else 0
 
     @property
     def high(self) -> int:
         """Return the greatest value that it may have."""
-        bits = 8 * self.size - (self.letter.islower() and self.size > 0)
-        return self.limit[1] if self.limit else (1 << bits) - 1
+        return self.limit[1] if self.limit else (1 << 8 * self.size - self.signed) - 1
 
     @property
     def definition(self) -> str:
@@ -99,7 +106,7 @@ class Row:
         """Return `to`, `from` or `both`: which way it goes, seen from the robot."""
         if self.name in BOTH_WAYS:
             return "both"
-        answers = self.name in ANSWERS if self.number < frames.UNSEEDED_BELOW else self.number >= FROM_THE_ROBOT
+        answers = self.name in ANSWERS if self.number < frames.GREETINGS_BELOW else self.number >= FROM_THE_ROBOT
         return "from" if answers else "to"
 
     @property
@@ -129,6 +136,12 @@ def rows() -> list[Row]:
             offset += fields[-1].size
         found.append(Row(message.number, message.name, words[message.name], tuple(fields)))
     return found
+
+
+def variables() -> list[Place]:
+    """Return every variable of telemetry, at its number; one whose letter ends in `*` has a value for each coil."""
+    words, names = meanings.read(), enums()
+    return [_place(f"var.{row.name}", row, 0, words, names) for row in VARIABLES]
 
 
 def enums() -> dict[str, dict[int, str]]:

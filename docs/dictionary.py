@@ -6,6 +6,7 @@ for each name in it and each code.
 
     20 fire coils:I duty_permille:H[0..1000] hold_ms:H
     STATES boot idle armed running tripped
+    var 7 current_ma:H
     CODES =1 R01 R02 ... =101 F01
 """
 
@@ -16,14 +17,17 @@ from protocol import causes
 
 
 def definition_text() -> str:
-    """Return the definitions: messages in the order of their numbers, then enums."""
+    """Return the definitions: messages in the order of their numbers, then enums, then variables."""
     lines = [row.definition for row in sorted(definitions.rows(), key=lambda row: row.number)]
-    return _text([*lines, *(enum_line(name, names) for name, names in definitions.enums().items())]) + "\n"
+    lines += [enum_line(name, names) for name, names in definitions.enums().items()]
+    lines += [f"var {number} {place.definition}" for number, place in enumerate(definitions.variables())]
+    return _text(lines) + "\n"
 
 
 def help_text() -> str:
     """Return the words: what each name of the definitions means, and what to do about each code."""
-    return _text([*_messages(), *_codes()])
+    variables = [f"var.{place.name} {place.words}" for place in definitions.variables()]
+    return _text([*_messages(), *variables, *_codes()])
 
 
 def enum_line(name: str, names: dict[int, str]) -> str:

@@ -1,10 +1,10 @@
-"""What each message and field means: the comment beside it in protocol/messages.py.
+"""What each message, field and variable means: the comment beside it in protocol/messages.py and variables.py.
 
-The words stand in the one table, where they are read with the rows they explain, but as comments: a board has no room
+The words stand in the tables, where they are read with the rows they explain, but as comments: a board has no room
 for text that only documents print. A comment may go on in lines of its own.
 
     words = read()
-    words["fire"], words["fire.hold_ms"]
+    words["fire"], words["fire.hold_ms"], words["var.supply_mv"]
 """
 
 import ast
@@ -13,12 +13,20 @@ import tokenize
 from collections.abc import Iterator
 from pathlib import Path
 
-from protocol import messages
+from protocol import messages, variables
 
 
 def read(source: str | None = None) -> dict[str, str]:
-    """Return the meanings by `message` and `message.field`; ValueError names one that has none."""
-    text = Path(messages.__file__).read_text(encoding="utf-8") if source is None else source
+    """Return the meanings by `message`, `message.field` and `var.variable`; ValueError names one that has none."""
+    if source is None:
+        files = [Path(module.__file__) for module in (messages, variables)]
+        return {
+            name: text for file in files for name, text in _read(file.read_text(encoding="utf-8"), file.name).items()
+        }
+    return _read(source, "messages.py")
+
+
+def _read(text: str, file: str) -> dict[str, str]:
     tokens = tokenize.generate_tokens(io.StringIO(text).readline)
     comments = [token for token in tokens if token.type == tokenize.COMMENT]
     beside = {token.start[0]: token.string for token in comments}
@@ -26,7 +34,7 @@ def read(source: str | None = None) -> dict[str, str]:
     found = {}
     for name, line in _rows(ast.parse(text)):
         if line not in beside:
-            raise ValueError(f"messages.py:{line}: {name} has no comment that says what it means")
+            raise ValueError(f"{file}:{line}: {name} has no comment that says what it means")
         found[name] = " ".join(_comment(beside, alone, line))
     return found
 
@@ -39,8 +47,12 @@ def _comment(beside: dict[int, str], alone: set[int], line: int) -> Iterator[str
 
 
 def _rows(tree: ast.Module) -> Iterator[tuple[str, int]]:
-    """Yield each message and each of its fields with the line that its name stands on."""
+    """Yield each message, each of its fields and each variable with the line that its name stands on."""
     for statement in tree.body:
+        if isinstance(statement, ast.Assign) and isinstance(statement.value, ast.Tuple):
+            for row in statement.value.elts:
+                if _is_call(row, "Variable"):
+                    yield f"var.{row.args[0].value}", row.lineno
         if not isinstance(statement, ast.Assign) or not _is_call(statement.value, "Message"):
             continue
         _, name, *fields = statement.value.args

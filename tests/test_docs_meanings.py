@@ -4,14 +4,16 @@ import pytest
 
 from docs import meanings
 from protocol import messages
+from protocol.variables import VARIABLES
 
 
-def test_every_message_and_every_field_has_its_words():
+def test_every_message_every_field_and_every_variable_has_its_words():
     rows = [
         (message.name, *(f"{message.name}.{field.name}" for field in message.fields)) for message in messages.MESSAGES
     ]
 
-    assert set(meanings.read()) == {name for row in rows for name in row}
+    expected = {name for row in rows for name in row} | {f"var.{row.name}" for row in VARIABLES}
+    assert set(meanings.read()) == expected
 
 
 def test_a_field_without_words_is_named():

@@ -8,6 +8,8 @@ import click
 import pytest
 
 from host.cli import main as softrig
+from protocol.frames import RELIABLE, Decoder, StopFinder
+from protocol.messages import FIRE
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -37,12 +39,30 @@ def test_a_page_that_is_not_as_its_table_is_named(generate, tmp_path, monkeypatc
     assert capsys.readouterr().err == "docs/codes.md is out of date: make docs\n"
 
 
-def test_the_example_on_the_protocol_page_is_a_hello(generate):
-    line = re.search(r"^    ((?:[0-9a-f]{2} )+00)$", generate.protocol_page(), re.MULTILINE)[1]
+def test_the_worked_example_on_the_protocol_page_is_the_order_that_it_says(generate):
+    page = generate.protocol_page()
+    wire = re.search(r"^\| on the wire \| `([0-9a-f ]+)` \|$", page, re.MULTILINE)[1]
+    crc, session = re.search(r"crc32\(78 56 34 12, 0x(\w+)\)", page)[1], 0x12345678
 
-    (frame,) = generate.frames.Decoder().feed(bytes.fromhex(line))
+    (frame,) = Decoder(int(crc, 16), session).feed(bytes.fromhex(wire))
 
-    assert generate.messages.HELLO.unpack(frame.payload) == (2, 0x12345678, 0, 0, 0)
+    assert FIRE.unpack(frame.payload) == (1, 600, 500)
+    assert (frame.seq, frame.ack, frame.flags) == (1, 3, RELIABLE)
+
+
+def test_every_frame_of_the_conversation_on_the_protocol_page_is_whole(generate):
+    page = generate.protocol_page()
+    talk = page[page.index("## A conversation") : page.index("## Messages")]
+    lines = re.findall(r"^(?:host |robot)  ((?:[0-9a-f]{2}\s+)+)", talk, re.MULTILINE)
+    session = int(re.search(r"Session 0x(\w+)", talk)[1], 16)
+    crc = int(re.search(r"its CRC-32 is 0x(\w+)", talk)[1], 16)
+    decoder, finder = Decoder(crc, session), StopFinder()
+
+    wire = [bytes.fromhex(line) for line in lines]
+    found = [frame for line in wire for frame in decoder.feed(line)]
+
+    assert (len(wire) - len(found), decoder.dropped) == (1, 0)
+    assert [finder.feed(line) for line in wire].count(True) == 1
 
 
 def test_every_command_the_readme_names_exists():
