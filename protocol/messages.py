@@ -59,25 +59,34 @@ Field = namedtuple("Field", ("name", "letter"))  # one value of a message: its n
 
 
 class Message:
-    """One row of the table; packs and unpacks its payload, and refuses values that its fields cannot hold."""
+    """One row of the table; packs and unpacks its payload, and refuses values that its fields cannot hold.
+
+    A row that is never used takes little memory: a board has all of them and needs half.
+    """
+
+    _tuple = None  # made with the rest of what packing needs when that is first needed
 
     def __init__(self, number: int, name: str, *fields) -> None:
         self.number = number
         self.name = name
-        self.fields = fields
-        self._open = bool(fields) and fields[-1].letter == "s"
-        sized = fields[:-1] if self._open else fields
-        self._format = "<" + "".join([field.letter for field in sized])
-        self._size = struct.calcsize(self._format)
-        self._tuple = None  # made when it is first needed: a board receives only half of the messages
+        self._names = " ".join([field.name for field in fields])
+        self._letters = "".join([field.letter for field in fields])
+
+    @property
+    def fields(self) -> tuple:
+        """Return the fields in their order."""
+        names = self._names.split(" ")
+        return tuple([Field(names[i], self._letters[i]) for i in range(len(self._letters))])
 
     def pack(self, **values) -> bytes:
         """Return the payload; ValueError names a field that is missing, unknown or outside its range."""
-        if len(values) != len(self.fields):
-            raise ValueError(f"{self.name} takes {', '.join([field.name for field in self.fields])}")
+        if self._tuple is None:
+            self._learn()
+        if len(values) != self._count:
+            raise ValueError(f"{self.name} takes {self._names}")
         try:
-            numbers = tuple([values[self.fields[i].name] for i in range(len(self._format) - 1)])
-            rest = bytes(values[self.fields[-1].name]) if self._open else b""
+            numbers = tuple([values[name] for name in self._numbers])
+            rest = bytes(values[self._rest]) if self._rest else b""
         except KeyError as missing:
             raise ValueError(f"{self.name} needs {missing.args[0]}") from None
         try:
@@ -90,16 +99,25 @@ class Message:
 
     def unpack(self, payload: bytes):
         """Return the fields as a named tuple; ValueError when the length is not this message's."""
-        if len(payload) < self._size or (len(payload) > self._size and not self._open):
+        if self._tuple is None:
+            self._learn()
+        if len(payload) < self._size or (len(payload) > self._size and not self._rest):
             raise ValueError(f"{self.name}: {len(payload)} bytes, expected {self._size}")
         numbers = struct.unpack(self._format, payload[: self._size])
-        if self._tuple is None:
-            self._tuple = namedtuple(self.name, tuple([field.name for field in self.fields]))
-        return self._tuple(*numbers, payload[self._size :]) if self._open else self._tuple(*numbers)
+        return self._tuple(*numbers, payload[self._size :]) if self._rest else self._tuple(*numbers)
 
     def line(self) -> str:
         """Return this row as the dictionary prints it: `20 fire coils:I duty_permille:H hold_ms:H`."""
         return " ".join([str(self.number), self.name] + [f"{field.name}:{field.letter}" for field in self.fields])
+
+    def _learn(self) -> None:
+        names = tuple(self._names.split(" ")) if self._names else ()
+        self._count = len(names)
+        self._rest = names[-1] if self._letters.endswith("s") else ""
+        self._numbers = names[:-1] if self._rest else names
+        self._format = "<" + self._letters[: len(self._numbers)]
+        self._size = struct.calcsize(self._format)
+        self._tuple = namedtuple(self.name, names)
 
     def _complaint(self, values: dict) -> str:
         for field in self.fields:
