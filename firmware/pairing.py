@@ -56,9 +56,13 @@ class Pairing:
     def _numbered(self) -> bool:
         """Write down the number of this start; False when the flash does not take it, or has lost the last one."""
         kept = self._store.read()
-        if self._store.damaged() or (kept is not None and len(kept) != 4):
+        if kept is None:
+            kept = bytes(4)
+            if self._store.lost() or not self._store.write(kept):  # so that no number that is used was the first record
+                return False
+        if len(kept) != 4:
             return False
-        self._start = 1 if kept is None else struct.unpack("<I", kept)[0] + 1
+        self._start = struct.unpack("<I", kept)[0] + 1
         return self._start < STARTS and self._store.write(struct.pack("<I", self._start))
 
 

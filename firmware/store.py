@@ -36,6 +36,13 @@ class Store:
         """Return whether something was written once of which nothing can be read."""
         return self.read() is None and any(self._raw(path) is not None for path in self._paths)
 
+    def lost(self) -> bool:
+        """Return whether there was a whole record once, of which nothing can be read: a torn first one was never whole.
+
+        The second file is written only when the first is whole.
+        """
+        return self.read() is None and self._raw(self._paths[1]) is not None
+
     def write(self, payload: bytes) -> bool:
         """Make `payload` the record; False when the flash did not take it, and the record before it stands."""
         records = self._records()

@@ -53,7 +53,7 @@ def test_an_identity_that_answered_another_hello_is_a_wrong_key():
 
 @pytest.mark.parametrize("key", [KEY, b""])
 def test_a_damaged_key_of_the_robot_is_told_with_its_code(key):
-    with pytest.raises(NotPaired, match="F24 .*`softrig key new`"):
+    with pytest.raises(NotPaired, match=r"F24 .*`softrig key new`"):
         session_key(key, OPENING, identity(secured=messages.KEY_DAMAGED))
 
 
