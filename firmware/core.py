@@ -53,6 +53,7 @@ class Core:
         self.reports = Reports(self)
         self.tasks = Tasks()
         self._stop = StopFinder()
+        self.intact_ms = -1  # when bytes came last that made sense, -1: never
         self._armed_ms = 0
         self._attach = 0  # the session that the one on offer would take over from
         self._leave_ms = -1  # when to make room for the console, -1: never
@@ -202,10 +203,13 @@ class Core:
     def _receive(self, data: bytes) -> None:
         if self._stop.feed(data):
             coils = self.channels.on_mask
+            self.intact_ms = self.now_ms
             self.trip(codes.STOP)
             self.greetings.stopped(coils)
         self.link.may_adopt = self._may_adopt()
         delivered = self.link.receive(data, self.now_ms)
+        if delivered or self.link.heard_ms == self.now_ms:
+            self.intact_ms = self.now_ms
         if self.link.session != self.session:
             self._take_session(self.link.session)
         for received in delivered:

@@ -9,6 +9,7 @@ everywhere, all else goes where the session's last valid frame came from.
 """
 
 from firmware.beacons import Beacons
+from firmware.rates import Rates
 from protocol.canbus import ALL, BYTE_NS
 from protocol.frames import GREETINGS_BELOW, STOP, StopFinder
 from protocol.messages import STOPPED
@@ -26,6 +27,7 @@ class Wires:
         self._board = board
         self._core = core
         self._beacons = Beacons(core, port) if port else None
+        self._rates = Rates(board)
         self._asker = self._host = SERIAL  # who spoke last, and who holds the session
         self._finder = StopFinder()
         self._serial = b""
@@ -37,6 +39,8 @@ class Wires:
         data = self.read(now_ms)
         core.link.byte_ns = self.byte_ns()
         self.write(core.step(now_ms, data, self.room()), core.link.heard_ms == now_ms)
+        if (self._board.noise or self._rates.trying) and not self._serial:
+            self._rates.look(now_ms, core.intact_ms == now_ms and self._asker == SERIAL, core.at_rest())
         if self._beacons:
             self._beacons.tell(now_ms)
 

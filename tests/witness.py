@@ -63,7 +63,11 @@ class Witness:
     def _at_line(self) -> None:
         """Listen at the device's end of the line."""
         line, uart = self._line, self.bench.board.uart
-        read, write = uart.read, uart.write
+        read, write, tune = uart.read, uart.write, uart.open
+
+        def opens(baud: int, now_us: int, *buffers: int) -> None:
+            line.append((now_us, HEARD, b"\x00"))  # no frame goes on over another rate
+            tune(baud, now_us, *buffers)
 
         def reads(count: int, now_us: int) -> bytes:
             data = read(count, now_us)
@@ -76,7 +80,7 @@ class Witness:
             line.append((now_us, TOLD, data[:count]))
             return count
 
-        uart.read, uart.write = reads, writes
+        uart.read, uart.write, uart.open = reads, writes, opens
 
     def _at_parts(self) -> None:
         """Listen at reset, gates and the journal's faults."""

@@ -25,7 +25,7 @@ WARM, STRAP, THERMISTOR = 21, 22, 26
 MONITOR = 0x40
 WATCHDOG_MS = 200
 WRITING_MS = 2000  # the flash erases a sector in 45 ms, at worst in 400 ms (W25Q16JV), and a file may take two
-BAUD = 115_200
+BAUD = 115_200  # to begin with, see rates.py
 BUFFER_BYTES = 512
 CRYSTAL_HZ = 8_000_000  # of the MCP2515
 SPI_HZ = 8_000_000
@@ -37,7 +37,6 @@ class Board:
     """The hardware as the core sees it: a supply switch, a heartbeat, PWM outputs, sensors and a serial line."""
 
     credit_bytes = CREDIT_BYTES
-    byte_ns = 10 * 1_000_000_000 // BAUD
 
     def __init__(self) -> None:
         self._power = Pin(PWR_EN, Pin.OUT, value=0)
@@ -47,8 +46,7 @@ class Board:
         self._warm = Pin(WARM, Pin.IN, Pin.PULL_UP)
         self._beat = 0
         self._bus = Attended(I2C(0, scl=Pin(SCL), sda=Pin(SDA), freq=400_000, timeout=1000))
-        self._uart = UART(0, baudrate=BAUD, tx=Pin(TX), rx=Pin(RX), txbuf=BUFFER_BYTES, rxbuf=BUFFER_BYTES)
-        self._quiet_ms = time.ticks_ms()  # when the line will have sent all that was written
+        self.tune(BAUD)
         self._thermistor = ADC(Pin(THERMISTOR))
         self.watch()
 
@@ -116,21 +114,37 @@ class Board:
         """Return the board's temperature; far outside -40..150 C when the thermistor is open or shorted."""
         return decidegc(self._thermistor.read_u16())
 
+    def tune(self, baud: int) -> None:
+        """Run the serial line at that rate; what is on it is lost."""
+        self._baud = baud
+        self.byte_ns = 10 * 1_000_000_000 // baud
+        self.noise = 0  # bytes that have arrived since somebody last set it to 0
+        self._cut = b"\x00"  # ends what had arrived of a frame
+        self._uart = UART(0, baudrate=baud, tx=Pin(TX), rx=Pin(RX), txbuf=BUFFER_BYTES, rxbuf=BUFFER_BYTES)
+        self._quiet_ms = time.ticks_ms()  # when the line will have sent all that was written
+
     def read(self) -> bytes:
         """Return the bytes that have arrived."""
-        return self._uart.read() or b""
+        data = self._uart.read()
+        if not data:
+            return b""
+        self.noise += len(data)
+        if self._cut:
+            data = self._cut + data
+            self._cut = b""
+        return data
 
     def room(self) -> int:
         """Return how many bytes `write` takes now."""
         busy_ms = max(0, time.ticks_diff(self._quiet_ms, time.ticks_ms()))
-        return BUFFER_BYTES - busy_ms * BAUD // 10_000
+        return BUFFER_BYTES - busy_ms * self._baud // 10_000
 
     def write(self, data: bytes) -> None:
         """Send bytes to the host; what is more than `room` would be lost."""
         if data:
             now_ms = time.ticks_ms()
             begin_ms = self._quiet_ms if time.ticks_diff(self._quiet_ms, now_ms) > 0 else now_ms
-            self._quiet_ms = time.ticks_add(begin_ms, 1 + len(data) * 10_000 // BAUD)
+            self._quiet_ms = time.ticks_add(begin_ms, 1 + len(data) * 10_000 // self._baud)
             self._uart.write(data)
 
     def open(self, path: str, mode: str):
