@@ -24,6 +24,7 @@ from host.errors import BadRequest, LinkLost, NoRobot, PortAbsent, PortBusy, Por
 from host.holder import holder_of
 
 BAUD = 115200
+BAUD_MAX = 4_000_000
 CONNECT_S = 5.0
 WRITE_S = 2.0
 CHUNK = 65536
@@ -83,16 +84,16 @@ def open_link(address: str) -> Link:
 
 
 def open_serial(address: str) -> Link:
-    """Open a serial port or pty, for this program alone; an optional `serial:` goes before its path."""
+    """Open a serial port or pty, for this program alone: `serial:PATH@BAUD`, of which the path is enough."""
     import serial  # noqa: PLC0415
 
-    path = address.removeprefix("serial:")
+    path, baud = _path_and_baud(address.removeprefix("serial:"))
     refusals: tuple[type[Exception], ...] = (OSError, ValueError, *_terminal_errors())
     try:
-        port = serial.Serial(path, BAUD, timeout=0, write_timeout=WRITE_S, exclusive=True)
+        port = serial.Serial(path, baud, timeout=0, write_timeout=WRITE_S, exclusive=True)
     except refusals as error:
         _refuse_port(path, error)
-    return SerialLink(port, path)
+    return SerialLink(port, path, baud)
 
 
 def open_socket(address: str) -> Link:
@@ -131,9 +132,10 @@ class SerialLink:
 
     observer = None
 
-    def __init__(self, port: Any, path: str) -> None:
+    def __init__(self, port: Any, path: str, baud: int = BAUD) -> None:
         self._port = port
         self._path = path
+        self._baud = baud
 
     def now_s(self) -> float:
         """Return the monotonic clock."""
@@ -164,7 +166,7 @@ class SerialLink:
     def reopen(self) -> Link:
         """Return the same port, opened again."""
         self.close()
-        return open_serial(self._path)
+        return open_serial(f"{self._path}@{self._baud}")
 
     def pause(self, until_s: float) -> None:
         """Let time pass without the port."""
@@ -226,6 +228,16 @@ class SocketLink:
     def pause(self, until_s: float) -> None:
         """Let time pass without the connection."""
         time.sleep(max(0.0, until_s - time.monotonic()))
+
+
+def _path_and_baud(text: str) -> tuple[str, int]:
+    """Return what stands before and after the last @; a path that has one in itself may be followed by another."""
+    path, at, baud = text.rpartition("@")
+    if not at or (os.path.exists(text) and not os.path.exists(path)):
+        return text, BAUD
+    if not (baud.isascii() and baud.isdigit() and 0 < int(baud) <= BAUD_MAX):
+        raise BadRequest(f"{text}: {baud!r} is no rate; write {path}@921600")
+    return path, int(baud)
 
 
 def _refuse_port(path: str, error: Exception) -> NoReturn:

@@ -56,6 +56,33 @@ def test_bytes_pass_both_ways_through_a_port(terminal):
     link.close()
 
 
+@pytest.mark.parametrize(("rate", "speed"), [("", termios.B115200), ("@921600", termios.B921600)])
+def test_an_address_may_name_the_rate(terminal, rate, speed):
+    link = open_link(f"{terminal[1]}{rate}")
+
+    assert termios.tcgetattr(terminal[0])[5] == speed
+
+    again = link.reopen()
+    assert termios.tcgetattr(terminal[0])[5] == speed
+    again.close()
+
+
+def test_a_path_that_has_an_at_in_it_is_opened_all_the_same(terminal, tmp_path):
+    port = tmp_path / "robot@3"
+    port.symlink_to(terminal[1])
+
+    for address in (str(port), f"serial:{port}@230400"):
+        open_link(address).close()
+
+    assert termios.tcgetattr(terminal[0])[5] == termios.B230400
+
+
+@pytest.mark.parametrize("rate", ["fast", "0", "-9600", "1e6", "5000000"])
+def test_what_is_no_rate_is_told(terminal, rate):
+    with pytest.raises(BadRequest, match="is no rate; write .*@921600"):
+        open_link(f"{terminal[1]}@{rate}")
+
+
 def test_reading_returns_nothing_at_its_deadline(terminal):
     link = open_link(f"serial:{terminal[1]}")
     until_s = link.now_s() + 0.05
