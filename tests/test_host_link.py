@@ -79,7 +79,7 @@ def test_a_path_that_has_an_at_in_it_is_opened_all_the_same(terminal, tmp_path):
 
 @pytest.mark.parametrize("rate", ["fast", "0", "-9600", "1e6", "5000000"])
 def test_what_is_no_rate_is_told(terminal, rate):
-    with pytest.raises(BadRequest, match="is no rate; write .*@921600"):
+    with pytest.raises(BadRequest, match=r"is no rate; write .*@921600"):
         open_link(f"{terminal[1]}@{rate}")
 
 
