@@ -24,6 +24,7 @@ CRC_BYTES = 4
 BODY_MIN = HEAD_BYTES + CRC_BYTES
 BODY_MAX = 253
 PAYLOAD_MAX = BODY_MAX - BODY_MIN - 1 - TAG_BYTES  # so that any payload leaves room for node and tag
+INTACT = 0x2144DF1C  # the CRC of a body with its CRC, whatever it starts from
 STUFFING = 2  # bytes that COBS and the delimiter add to a body
 FRAME_MAX = BODY_MAX + STUFFING
 GREETINGS_BELOW = 0x10
@@ -66,20 +67,24 @@ def close(body: bytes, seed: int) -> bytes:
 
 def encode(body: bytes) -> bytes:
     """Return `body` as it goes on the wire: stuffed so that its only zero is the last byte."""
-    stuffed = b"".join([bytes((len(run) + 1,)) + run for run in body.split(b"\x00")])
-    return stuffed + b"\x00"
+    stuffed = bytearray()
+    for run in body.split(b"\x00"):
+        stuffed.append(len(run) + 1)
+        stuffed += run
+    stuffed.append(0)
+    return bytes(stuffed)
 
 
 def decode(stuffed: bytes) -> bytes | None:
     """Return the body of a stuffed frame without its delimiter, or None when its lengths do not add up."""
     runs = []
-    at = 0
-    while at < len(stuffed):
-        end = at + stuffed[at]
-        if end == at or end > len(stuffed):
+    end, size = 0, len(stuffed)
+    while end < size:
+        begin = end + 1
+        end += stuffed[end]
+        if not begin <= end <= size:
             return None
-        runs.append(stuffed[at + 1 : end])
-        at = end
+        runs.append(stuffed[begin:end])
     return b"\x00".join(runs)
 
 
@@ -115,52 +120,44 @@ class Decoder:
             if self._skipping:
                 self._skipping = False
             elif chunk and chunk != b"STOP":
-                self._take(chunk, frames)
+                frame = self._frame(chunk)
+                if frame is None:
+                    self.dropped += 1
+                else:
+                    frames.append(frame)
         if len(self._tail) > BODY_MAX + 1:
             self.dropped += not self._skipping
             self._skipping = True
             self._tail = b""
         return frames
 
-    def _take(self, chunk: bytes, frames: list) -> None:
-        body = decode(chunk) if BODY_MIN < len(chunk) <= BODY_MAX + 1 else None
-        frame = self._unseal(body) if body is not None else None
-        if frame is None:
-            self.dropped += 1
-        else:
-            frames.append(frame)
-
-    def _unseal(self, body: bytes) -> Frame | None:
-        """Return the frame of `body`, or None when it is damaged or foreign.
+    def _frame(self, chunk: bytes) -> Frame | None:
+        """Return the frame between two zeros, or None when it is damaged, foreign, or shorter than its flags say.
 
         A frame of another version is foreign too, unless it is a greeting: a hello of any version must be answered.
         """
-        kind, flags = body[1], body[0] & 15
-        greeting = kind < GREETINGS_BELOW
-        if (body[0] >> 4 != VERSION or flags & RESERVED) and not greeting:
+        body = decode(chunk) if BODY_MIN < len(chunk) <= BODY_MAX + 1 else None
+        if body is None:
             return None
-        covered, told = body[:-4], int.from_bytes(body[-4:], "little")
-        seed = 0 if greeting else self.dictionary_crc if OPEN_FROM <= kind < OPEN_BELOW else self.seed
-        offered = False
-        if crc32(covered, seed) != told:
+        first, kind, seed, offered = body[0], body[1], self.seed, False
+        if kind < GREETINGS_BELOW:
+            seed = 0
+        elif first >> 4 != VERSION or first & RESERVED:
+            return None
+        elif OPEN_FROM <= kind < OPEN_BELOW:
+            seed = self.dictionary_crc
+        if crc32(body, seed) != INTACT:
             offered = self._offered_seed is not None and seed == self.seed
-            if not offered or crc32(covered, self._offered_seed) != told:
+            if not offered or crc32(body, self._offered_seed) != INTACT:
                 return None
-        return frame_of(covered, offered)
-
-
-def frame_of(body: bytes, offered: bool = False) -> Frame | None:
-    """Return the fields of a body without its CRC, or None when it is shorter than its flags say."""
-    flags, begin, end = body[0] & 15, HEAD_BYTES, len(body)
-    node = 0
-    if flags & NODE:
-        begin += 1
-        node = body[4] if end > HEAD_BYTES else 0
-    if flags & SEALED:
-        end -= TAG_BYTES
-    if end < begin:
-        return None
-    return Frame(flags, body[1], body[2], body[3], node, body[begin:end], body, offered)
+        body = body[:-CRC_BYTES]
+        begin, end, node = HEAD_BYTES, len(body), 0
+        if first & NODE:
+            node = body[4] if end > HEAD_BYTES else 0
+            begin += 1
+        if first & SEALED:
+            end -= TAG_BYTES
+        return Frame(first & 15, kind, body[2], body[3], node, body[begin:end], body, offered) if begin <= end else None
 
 
 class StopFinder:
