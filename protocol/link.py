@@ -21,6 +21,8 @@ QUEUE_MAX = 64
 RESERVE = 8  # places of the queue that are kept for answers to what the other end was allowed to send
 ALIVE_BYTES = 5
 LAPS = 4  # of its 256 numbers that a posted frame may be ahead when all before it were lost
+LATE = 16  # a posted frame that seems so much older than the newest is: it was late on its way, or comes twice
+PAST_MAX = 8  # sessions whose end is remembered
 
 Received = namedtuple("Received", ("kind", "seq", "payload"))
 
@@ -42,11 +44,15 @@ class Link:
         self.foreign = 0  # intact frames of a session that is not in force
         self._device = device
         self._addressed = node != 0 and not device
+        self._past = []
+        self.session = 0
         self.begin(dictionary_crc, 0)
 
     def begin(self, dictionary_crc: int, session: int, key: bytes = b"") -> None:
         """Begin a session: numbers start at 0, nothing waits. With a `key` every frame of it carries a tag."""
         self.decoder.tune(dictionary_crc, session)
+        if self.session not in (0, session):
+            self._past = (self._past + [self.session])[-PAST_MAX:]
         self.session = session
         self.key = key
         self.heard_ms = None  # time of the last frame of the session
@@ -64,13 +70,19 @@ class Link:
         self._posts = []
         self._ack_due = False
         self._told_slots = WINDOW
+        self._retell = 0  # reliable frames that are still answered by an `alive`: the one before may be lost
 
-    def offer(self, session: int, key: bytes = b"") -> None:
-        """Be ready for a session that may follow: its first frame begins it, when `may_adopt` then."""
-        if session == self.session:
-            return
-        self._offered = (session, key)
-        self.decoder.offer(session)
+    def offer(self, session: int, key: bytes = b"") -> bool:
+        """Be ready for a session that may follow: its first frame begins it, when `may_adopt` then.
+
+        False: it has been, and is over; a hello that was late on its way does not bring its frames back.
+        """
+        if session in self._past:
+            return False
+        if session != self.session:
+            self._offered = (session, key)
+            self.decoder.offer(session)
+        return True
 
     def granted(self, slots: int, octets: int) -> None:
         """Keep within so many frames and bytes that are not acknowledged; later the other end says so itself."""
@@ -100,7 +112,11 @@ class Link:
         return not self.flight.waiting
 
     def send(self, kind: int, payload: bytes, now_ms: int) -> int:
-        """Queue a reliable frame and return its sequence number; LinkFull when QUEUE_MAX frames wait."""
+        """Queue a reliable frame and return its sequence number.
+
+        LinkFull when QUEUE_MAX frames wait; ValueError when the payload is longer than PAYLOAD_MAX.
+        """
+        _check(payload)
         if self.room() <= 0:
             raise LinkFull(f"{QUEUE_MAX} frames wait for an acknowledgement")
         number = self._next_send
@@ -109,7 +125,11 @@ class Link:
         return number & 255
 
     def post(self, kind: int, payload: bytes, first: bool = False) -> None:
-        """Queue a frame that is not resent, before all others if need be; the oldest gives way when too many wait."""
+        """Queue a frame that is not resent, before all others if need be; the oldest gives way when too many wait.
+
+        ValueError when the payload is longer than PAYLOAD_MAX.
+        """
+        _check(payload)
         if len(self._posts) >= QUEUE_MAX:
             self._posts.pop(0)
         self._posts.insert(0 if first else len(self._posts), (kind, payload))
@@ -121,6 +141,7 @@ class Link:
     def receive(self, data: bytes, now_ms: int) -> list[Received]:
         """Take received bytes; return what they deliver, in order, each reliable frame exactly once."""
         delivered = []
+        begun = False  # the session that was offered when these bytes came: they were decoded all at once
         for frame in self.decoder.feed(data):
             if not self._is_ours(frame):
                 continue
@@ -128,10 +149,16 @@ class Link:
                 delivered.append(Received(frame.kind, frame.seq, frame.payload))
             elif frames.is_open(frame.kind):
                 self._take_open(frame, delivered)
-            elif frame.offered:
-                self._take_offered(frame, now_ms, delivered)
-            else:
+            elif frame.offered and not begun:
+                if self._begins(frame):
+                    begun = True
+                    # what the last session said a moment ago is nobody's order any more
+                    delivered = [received for received in delivered if received.kind < frames.GREETINGS_BELOW]
+                    self._take(frame, now_ms, delivered)
+            elif frame.offered == begun:
                 self._take(frame, now_ms, delivered)
+            else:
+                self.foreign += 1
         return delivered
 
     def poll(self, now_ms: int, room: int = 65_536) -> bytes:
@@ -139,7 +166,7 @@ class Link:
 
         No frame is begun that does not fit into `room` bytes; what is left comes with a later call.
         """
-        if self._told_slots == 0 and self._slots():
+        if self._opens():
             self._ack_due = True
         flight = self.flight
         if not (flight.waiting or self._posts or self._ack_due):
@@ -149,7 +176,7 @@ class Link:
             out.append(self._posted())
             room -= len(out[-1])
         for waiting in flight.due(now_ms) if flight.waiting else ():
-            if room < waiting.size:
+            if room < self._size(len(waiting.payload)):
                 break
             flight.sent(waiting, now_ms, self.byte_ns)
             out.append(self._line(waiting.kind, waiting.number, waiting.payload, frames.RELIABLE))
@@ -160,7 +187,7 @@ class Link:
 
     def due_ms(self, now_ms: int) -> int | None:
         """Return when `poll` has something to write, at the latest; None: nothing waits."""
-        if self._posts or self._ack_due:
+        if self._posts or self._ack_due or self._opens():
             return now_ms
         return self.flight.due_ms(now_ms)
 
@@ -185,8 +212,9 @@ class Link:
             if number < 0:
                 self.forged += 1
                 return
-        if frame.flags & frames.RELIABLE and not self._is_new(number):
-            self._ack_due = True
+        reliable = frame.flags & frames.RELIABLE != 0
+        if not (self._is_new(number) if reliable else number >= self._next_posted):
+            self._ack_due = self._ack_due or reliable
             self.duplicates += 1
             return
         self.heard_ms = now_ms
@@ -194,25 +222,24 @@ class Link:
             self._take_alive(frame, number, now_ms)
             return
         self.flight.acknowledged(frame.ack, 0, now_ms)
-        if frame.flags & frames.RELIABLE:
+        if reliable:
             self._take_reliable(frame, number, delivered)
         else:
             self._next_posted = number + 1
             delivered.append(Received(frame.kind, frame.seq, frame.payload))
 
-    def _take_offered(self, frame, now_ms: int, delivered: list) -> None:
+    def _begins(self, frame) -> bool:
         """Begin the session that was offered, if this frame is a true one of it and the time is right."""
         session, key = self._offered
         if key and not self._is_true(frame, frame.seq, key):
             self.forged += 1
-        elif not self.may_adopt:
+            return False
+        if not self.may_adopt:
             self.foreign += 1
-        else:
-            while delivered:
-                delivered.pop()  # what the last session said a moment ago is nobody's order any more
-            self.begin(self.decoder.dictionary_crc, session, key)
-            self._ack_due = True
-            self._take(frame, now_ms, delivered)
+            return False
+        self.begin(self.decoder.dictionary_crc, session, key)
+        self._ack_due = True
+        return True
 
     def _take_alive(self, frame, number: int, now_ms: int) -> None:
         self._next_posted = number + 1
@@ -226,6 +253,7 @@ class Link:
 
     def _take_reliable(self, frame, number: int, delivered: list) -> None:
         self._ack_due = True
+        self._retell -= self._retell > 0
         self._ahead.append((number, frame))
         while True:
             due = [ahead for ahead in self._ahead if ahead[0] == self._next_receive]
@@ -252,11 +280,12 @@ class Link:
     def _number(self, frame) -> int:
         """Return the number that the last byte of it, which the frame carries, stands for.
 
-        A reliable frame may be a little older than what is due; a posted one is taken for newer than the last.
+        A reliable frame may be a little older than what is due, and a posted one than the last; with tags it is newer.
         """
         if frame.flags & frames.RELIABLE:
             return self._next_receive + ((frame.seq - self._next_receive + 128) & 255) - 128
-        return self._next_posted + ((frame.seq - self._next_posted) & 255)
+        late = 0 if self.key else LATE
+        return self._next_posted + ((frame.seq - self._next_posted + late) & 255) - late
 
     def _true_number(self, frame, number: int) -> int:
         """Return the number that the frame's tag was made with, or -1: it is forged, or was heard before."""
@@ -287,7 +316,9 @@ class Link:
         for number, _ in self._ahead:
             have |= 1 << (number - self._next_receive - 1)
         self._ack_due = False
-        self._told_slots = self._slots()
+        if self._told_slots != self._slots():
+            self._told_slots = self._slots()
+            self._retell = WINDOW
         number, self._next_post = self._next_post, self._next_post + 1
         payload = ALIVE.pack(have=have, slots=self._told_slots, bytes=self.grant_bytes)
         return self._line(ALIVE.number, number, payload, 0)
@@ -296,6 +327,10 @@ class Link:
         """Return for how many more frames there would be room to answer."""
         return max(0, min(WINDOW, self.room() - RESERVE))
 
+    def _opens(self) -> bool:
+        """Return whether the other end waits for credit that there is again."""
+        return self._told_slots == 0 and self._slots() > 0
+
     def _line(self, kind: int, number: int, payload: bytes, flags: int) -> bytes:
         """Return a frame as it goes on the wire; one of the session carries the acknowledgement."""
         node = self.node if self._addressed else 0
@@ -303,7 +338,7 @@ class Link:
             return frames.encode(frames.seal(kind, 0, 0, payload, 0, 0, node))
         if frames.is_open(kind):
             return frames.encode(frames.seal(kind, number & 255, 0, payload, self.decoder.dictionary_crc, flags, node))
-        if not self._ahead and self._told_slots == self._slots():
+        if not self._ahead and not self._retell and self._told_slots == self._slots():
             self._ack_due = False  # this frame carries all there is to say
         ack = self._next_receive & 255
         if not self.key:
@@ -316,3 +351,8 @@ class Link:
         """Return how long the frame of a payload is on the wire, at most."""
         extra = 1 if self._addressed else 0
         return payload_bytes + frames.BODY_MIN + frames.STUFFING + extra + (frames.TAG_BYTES if self.key else 0)
+
+
+def _check(payload: bytes) -> None:
+    if len(payload) > frames.PAYLOAD_MAX:
+        raise ValueError(f"payload {len(payload)} bytes, at most {frames.PAYLOAD_MAX}")
