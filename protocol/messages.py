@@ -22,6 +22,17 @@ _RANGES = {
 
 _OutOfRange = getattr(struct, "error", ValueError)  # MicroPython has no struct.error
 
+
+def _wraps() -> bool:
+    """Return whether struct packs a number that is too large for its field without a word, as MicroPython does."""
+    try:
+        return struct.pack("<B", 256) is not None
+    except (_OutOfRange, OverflowError):
+        return False
+
+
+_WRAPS = _wraps()
+
 STATES = ("boot", "idle", "armed", "running", "tripped")
 BOOT, IDLE, ARMED, RUNNING, TRIPPED = 0, 1, 2, 3, 4
 
@@ -82,49 +93,55 @@ class Message:
         """Return the payload; ValueError names a field that is missing, unknown or outside its range."""
         if self._tuple is None:
             self._learn()
-        if len(values) != self._count:
+        if len(values) != len(self._fields):
             raise ValueError(f"{self.name} takes {self._names}")
         try:
-            numbers = tuple([values[name] for name in self._numbers])
-            rest = bytes(values[self._rest]) if self._rest else b""
+            return self.packed(*[values[name] for name in self._fields])
         except KeyError as missing:
             raise ValueError(f"{self.name} needs {missing.args[0]}") from None
+
+    def packed(self, *values) -> bytes:
+        """Return the payload of all fields in their order; ValueError as from `pack`."""
+        if self._tuple is None:
+            self._learn()
+        if len(values) != len(self._fields):
+            raise ValueError(f"{self.name} takes {self._names}")
+        numbers = values[:-1] if self._open else values
         try:
-            packed = struct.pack(self._format, *numbers)
+            payload = struct.pack(self._format, *numbers)
         except _OutOfRange:
             raise ValueError(self._complaint(values)) from None
-        if struct.unpack(self._format, packed) != numbers:  # MicroPython wraps instead of raising
+        if _WRAPS and struct.unpack(self._format, payload) != numbers:
             raise ValueError(self._complaint(values))
-        return packed + rest
+        return payload + bytes(values[-1]) if self._open else payload
 
     def unpack(self, payload: bytes):
         """Return the fields as a named tuple; ValueError when the length is not this message's."""
         if self._tuple is None:
             self._learn()
-        if len(payload) < self._size or (len(payload) > self._size and not self._rest):
-            raise ValueError(f"{self.name}: {len(payload)} bytes, expected {self._size}")
-        numbers = struct.unpack(self._format, payload[: self._size])
-        return self._tuple(*numbers, payload[self._size :]) if self._rest else self._tuple(*numbers)
+        size = self._size
+        if len(payload) == size and not self._open:
+            return self._tuple(*struct.unpack(self._format, payload))
+        if len(payload) < size or not self._open:
+            raise ValueError(f"{self.name}: {len(payload)} bytes, expected {size}")
+        return self._tuple(*struct.unpack(self._format, payload[:size]), payload[size:])
 
     def line(self) -> str:
         """Return this row as the dictionary prints it: `20 fire coils:I duty_permille:H hold_ms:H`."""
         return " ".join([str(self.number), self.name] + [f"{field.name}:{field.letter}" for field in self.fields])
 
     def _learn(self) -> None:
-        names = tuple(self._names.split(" ")) if self._names else ()
-        self._count = len(names)
-        self._rest = names[-1] if self._letters.endswith("s") else ""
-        self._numbers = names[:-1] if self._rest else names
-        self._format = "<" + self._letters[: len(self._numbers)]
+        self._fields = tuple(self._names.split(" ")) if self._names else ()
+        self._open = self._letters.endswith("s")
+        self._format = "<" + (self._letters[:-1] if self._open else self._letters)
         self._size = struct.calcsize(self._format)
-        self._tuple = namedtuple(self.name, names)
+        self._tuple = namedtuple(self.name, self._fields)
 
-    def _complaint(self, values: dict) -> str:
-        for field in self.fields:
-            low, high = _RANGES.get(field.letter, (0, 0))
-            value = values[field.name]
-            if field.letter != "s" and not low <= value <= high:
-                return f"{self.name}: {field.name} {value}, must be {low} to {high}"
+    def _complaint(self, values: tuple) -> str:
+        for i, letter in enumerate(self._letters):
+            low, high = _RANGES.get(letter, (0, 0))
+            if letter != "s" and not low <= values[i] <= high:
+                return f"{self.name}: {self._fields[i]} {values[i]}, must be {low} to {high}"
         return f"{self.name}: a field is not a whole number"
 
 
