@@ -1,7 +1,12 @@
-"""The start of a session: hello until somebody answers, then the robot's dictionary, page by page.
+"""The start of a session: hello until somebody answers, then the robot's dictionary, unless it is known already.
 
 Hello and dictionary travel in frames that need no dictionary, and are asked again until they are answered. The time
 runs from the last progress, so that a slow line is not taken for a dead one.
+
+    handshake = Handshake(opening, now_ms, known)
+    for kind, payload in handshake.poll(now_ms): ...
+    handshake.take(kind, payload, now_ms)
+    handshake.profile    # once the robot is known
 """
 
 from __future__ import annotations
@@ -9,27 +14,34 @@ from __future__ import annotations
 from binascii import crc32
 from typing import Any
 
+from host.definitions import profile_of
+from host.dictionaries import Known
 from host.errors import Mismatch, Silent, SoftrigError
+from host.pages import Pages
+from host.pairing import Opening
+from host.profile import Profile
 from protocol import frames, messages
 
-ASK_MS = 250  # a question without an answer is asked again after this long
+ASK_MS = 250  # a hello without an answer is said again after this long
 GIVE_UP_MS = 3000  # without any progress
-PAGE = 200  # bytes of the dictionary in an answer
-PAGES_AHEAD = 4
 READINGS = 3  # of a dictionary that does not fit its checksum
 
 Question = tuple[int, bytes]
 
 
 class Handshake:
-    """Finds out who the robot is. `complete` once `dictionary` holds the whole text."""
+    """Finds out who the robot is that `opening` is said to."""
 
-    def __init__(self, session: int, now_ms: int) -> None:
+    def __init__(self, opening: Opening, now_ms: int, known: Known) -> None:
         self.dictionary = b""
-        self.complete = False
+        self.profile: Profile | None = None
         self.trouble: SoftrigError | None = None
-        self._session = session
+        self.begun_ms = now_ms  # no answer was made before
+        self._opening = opening
+        self._known = known
         self._readings = 0
+        self._asked_ms: int | None = None
+        self._pages = Pages(0)
         self._begin(now_ms)
 
     def take(self, kind: int, payload: bytes, now_ms: int) -> None:
@@ -50,84 +62,72 @@ class Handshake:
             raise self.trouble
         if now_ms - self._progress_ms >= GIVE_UP_MS:
             raise Silent("nobody answers: is the robot switched on, and is this its port?")
-        due = [place for place in self._wanted() if now_ms - self._asked.get(place, now_ms - ASK_MS) >= ASK_MS]
-        self._asked.update(dict.fromkeys(due, now_ms))
-        return [self._question(place) for place in due]
+        if self.identity is not None:
+            return [page_question(messages.DEFINITIONS, *place) for place in self._pages.due(now_ms)]
+        if self._asked_ms is not None and now_ms - self._asked_ms < ASK_MS:
+            return []
+        self._asked_ms = now_ms
+        return [(messages.HELLO.number, self._opening.payload())]
 
     def due_ms(self) -> int:
         """Return when `poll` next has something to say."""
-        asked = [self._asked.get(place, self._progress_ms - ASK_MS) + ASK_MS for place in self._wanted()]
-        return min([*asked, self._progress_ms + GIVE_UP_MS])
+        again_ms = self._asked_ms + ASK_MS if self._asked_ms is not None else self._progress_ms
+        if self.identity is not None:
+            again_ms = self._pages.due_ms() or self._progress_ms
+        return min(again_ms, self._progress_ms + GIVE_UP_MS)
 
     def _begin(self, now_ms: int) -> None:
         self.identity: Any = None
         self._progress_ms = now_ms
-        self._asked: dict[int, int] = {}  # offset of a page, -1: hello -> when it was asked last
-        self._pages: dict[int, bytes] = {}
-
-    def _wanted(self) -> list[int]:
-        if self.identity is None:
-            return [-1]
-        missing = [at for at in self._asked if at >= 0 and at not in self._pages]
-        return missing[:PAGES_AHEAD]
-
-    def _question(self, place: int) -> Question:
-        if place < 0:
-            return messages.HELLO.number, hello(self._session)
-        return messages.DICTIONARY.number, messages.DICTIONARY.pack(part=messages.DEFINITIONS, offset=place, count=PAGE)
+        self._asked_ms = None
 
     def _identify(self, identity: Any, now_ms: int) -> None:
-        if self.identity is not None or identity.session != self._session:
+        if self.identity is not None or identity.session != self._opening.session:
             return
         if identity.version != frames.VERSION:
             self.trouble = _other_version(identity.version)
+            return
         self.identity = identity
         self._progress_ms = now_ms
-        self._asked = {0: now_ms - ASK_MS}
+        self._pages = Pages(identity.dictionary_bytes)
+        text = self._known.find(identity.dictionary_crc, identity.dictionary_bytes)
+        if text is not None:
+            self._finish(text)
 
     def _turn_page(self, page: Any, now_ms: int) -> None:
-        """Keep a page; the first one tells how long pages are, and so where all the others begin."""
-        if self.identity is None or page.offset not in self._asked or page.offset in self._pages:
+        if self.identity is None or self.profile or page.part != messages.DEFINITIONS:
             return
-        self._pages[page.offset] = page.text
-        self._progress_ms = now_ms
-        if page.offset == 0 and page.text:
-            rest = range(len(page.text), self.identity.dictionary_bytes, len(page.text))
-            self._asked.update(dict.fromkeys(rest, now_ms - ASK_MS))
-        if len(self._pages) == len(self._asked):
-            self._finish(now_ms)
+        if self._pages.take(page.offset, page.text, now_ms):
+            self._progress_ms = now_ms
+        if self._pages.complete:
+            self._check(self._pages.text, now_ms)
 
-    def _finish(self, now_ms: int) -> None:
-        text = b"".join(self._pages[at] for at in sorted(self._pages))
+    def _check(self, text: bytes, now_ms: int) -> None:
         self._readings += 1
         if crc32(text) == self.identity.dictionary_crc:
-            self.dictionary, self.complete = text, True
+            self._known.keep(text)
+            self._finish(text)
         elif self._readings == READINGS:
             self.trouble = Mismatch("the robot's dictionary does not fit its checksum: put its firmware on it again")
         else:  # the robot was given another firmware between two pages
             self._begin(now_ms)
+
+    def _finish(self, text: bytes) -> None:
+        """Check that the robot means by every message what we mean, and that its profile is whole."""
+        self.dictionary = text
+        try:
+            self.profile = profile_of(text)
+        except Mismatch as mismatch:
+            self.trouble = mismatch
 
     def _denied(self, nak: Any) -> None:
         if nak.version != frames.VERSION:
             self.trouble = _other_version(nak.version)
 
 
-def hello(session: int, attach: int = 0) -> bytes:
-    """Return the payload that opens a session, or asks whether it is still there."""
-    payload: bytes = messages.HELLO.pack(version=frames.VERSION, session=session, attach=attach, nonce_a=0, nonce_b=0)
-    return payload
-
-
-def differing_lines(dictionary: bytes) -> list[str]:
-    """Return the rows of the robot's table of messages that are not ours: `-` ours only, `+` the robot's only."""
-    theirs = dictionary.split(b"\n\n", 1)[0].decode("utf-8", "replace").splitlines()
-    ours = [message.line() for message in messages.MESSAGES]
-    return [f"- {line}" for line in ours if line not in theirs] + [f"+ {line}" for line in theirs if line not in ours]
-
-
-def profile_text(dictionary: bytes) -> bytes:
-    """Return the profile that ends the dictionary, as it stands in the robot's flash."""
-    return dictionary.split(b"\n\n", 1)[-1]
+def page_question(part: int, offset: int, count: int) -> Question:
+    """Return what asks for a page of a part of the dictionary."""
+    return messages.DICTIONARY.number, messages.DICTIONARY.pack(part=part, offset=offset, count=count)
 
 
 def _other_version(version: int) -> Mismatch:

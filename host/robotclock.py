@@ -50,7 +50,7 @@ class RobotClock:
 
     def at(self, now_ms: float) -> int | None:
         """Return the robot's clock at the host's `now_ms`, or None before any robot time was read."""
-        return None if self._lines is None else int(now_ms + self._middle_ms(self._lines, now_ms)) % WRAP
+        return None if self._lines is None else round(now_ms + self._middle_ms(self._lines, now_ms)) % WRAP
 
     def earliest(self, now_ms: float) -> int | None:
         """Return what the robot's clock shows at least, unless it has begun anew."""

@@ -11,6 +11,7 @@ import random
 import struct
 from pathlib import Path
 
+from host.definitions import dictionary_of
 from host.errors import LinkLost
 from protocol import frames, messages, variables
 from protocol.link import Link
@@ -25,7 +26,7 @@ class FakeRobot:
     """Answers every request with ok, runs a program of `program_ms`, and does what its attributes say."""
 
     def __init__(self, profile: bytes = PROFILE, dictionary: bytes | None = None) -> None:
-        self.dictionary = dictionary or messages.dictionary(profile)
+        self.dictionary = dictionary or dictionary_of(profile)
         self.seed = frames.crc32(self.dictionary)
         self.link = Link(self.seed, device=True)
         self.link.may_adopt = True
@@ -87,6 +88,9 @@ class FakeRobot:
     def _serve(self, received, now_ms: int) -> None:
         message = messages.by_number(received.kind)
         order = message.unpack(received.payload)
+        if message is messages.CLOCK_REQUEST:
+            self._post(messages.CLOCK, host_us=order.host_us, received_ms=self.uptime_ms, sent_ms=self.uptime_ms)
+            return
         self.orders.append((now_ms, message.name, order))
         if message is messages.HELLO:
             self._hello(order)
@@ -180,6 +184,7 @@ class FakeLine:
     """A line to a fake robot: virtual time, steps of 5 ms, seeded loss of whole writes, and a cable to cut."""
 
     observer = None
+    repeatable = True
 
     def __init__(self, robot, loss: float = 0.0, seed: int = 1) -> None:
         self.robot = robot

@@ -10,9 +10,10 @@ from random import Random
 from zlib import crc32
 
 from hil_sim.link import SimLink
+from host.definitions import dictionary_of
 from host.gait.compiler import compile_script
 from host.gait.script import load
-from host.handshake import hello
+from host.pairing import Opening
 from host.profile import Profile, read_profile
 from host.robot import ENDS, Robot
 from host.run import TELEMETRY_MS
@@ -70,8 +71,8 @@ def speak_bare(link: SimLink, draw: Random, until_s: float) -> None:
     text = profile_text(link.bench)
     profile, session = read_profile(text), draw.randrange(1, 1 << 32)
     client = Link()
-    client.begin(crc32(messages.dictionary(text)), session)
-    client.post(messages.HELLO.number, hello(session))
+    client.begin(crc32(dictionary_of(text)), session)
+    client.post(messages.HELLO.number, Opening(session).payload())
     _exchange(link, client, 0.1)
     client.send(messages.ARM.number, messages.ARM.pack(session=session, lease_ms=0, without=0), _now_ms(link))
     while link.now_s() < until_s:

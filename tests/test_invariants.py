@@ -125,7 +125,7 @@ def test_an_order_that_was_on_its_way_before_the_last_was_answered_still_allows(
     rig.robot.arm()
     begun_s = rig.now_s
     for each_permille in (300, duty_permille, 300, duty_permille, 300, duty_permille, 100):
-        rig.robot._ask(messages.FIRE, coils=1, duty_permille=each_permille, hold_ms=1000)
+        rig.robot.talk.ask(messages.FIRE, coils=1, duty_permille=each_permille, hold_ms=1000)
     rig.run(seconds=1.5)
 
     assert rig.coil("A").off_at_s > begun_s + 0.9

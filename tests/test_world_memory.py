@@ -105,8 +105,8 @@ def test_no_control_step_allocates_when_a_chip_or_coil_fails(fault):
 def test_a_burst_of_questions_leaves_memory_for_their_answers(request_of):
     rig = HilRig("sim:circular?body=still&world=micropython")
     for _ in range(4):
-        asked = [rig.robot._ask(request_of) for _ in range(40)]
-        assert all(rig.robot._answer(seq) for seq in asked)
+        asked = [rig.robot.talk.ask(request_of) for _ in range(40)]
+        assert all(rig.robot.talk.answer(seq) for seq in asked)
 
     assert rig.bench.crashes == []
     rig.link.close()

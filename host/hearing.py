@@ -1,0 +1,136 @@
+"""What a session has heard from its robot so far: who it is, what it answered, how its clock runs.
+
+It is handed the frames that the link delivers and hands back the records among them. What ends the session stands in
+`trouble`; nothing that arrives can raise.
+
+    hearing = Hearing(handshake, now_us)
+    record = hearing.take(kind, payload, now_us)
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from host.answers import Answers
+from host.errors import SoftrigError
+from host.handshake import Handshake
+from host.profile import Profile
+from host.recognition import changed, restarted
+from host.records import Record, Status, Telemetry, event_of, state_name, stopped_of
+from host.selections import Selections, selection_of
+from host.silence import Silence
+from host.timekeeper import LATE_MS, SLACK_MS, Timekeeper
+from protocol import frames, messages
+
+
+class Hearing:
+    """The robot as this session knows it."""
+
+    def __init__(self, handshake: Handshake, now_us: int) -> None:
+        self.handshake = handshake
+        self.answers = Answers()
+        self.keeper = Timekeeper()
+        self.silence = Silence(now_us // 1000)
+        self.selections = Selections()
+        self.holds_lease = False
+        self.stopped = False  # the robot has answered a stop
+        self.last: Telemetry | None = None
+        self.last_ms: int | None = None  # when it came
+        self.trouble: SoftrigError | None = None
+        self.greeted_ms: int | None = None  # the first hello to an open session that is not answered
+        self.damaged = 0  # frames whose payload did not fit their message
+
+    @property
+    def profile(self) -> Profile | None:
+        """Return the robot's profile, or None before it is known."""
+        return self.handshake.profile
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Return the labels of the robot's coils, none before it is known."""
+        return self.profile.labels if self.profile else ()
+
+    def take(self, kind: int, payload: bytes, now_us: int) -> Record | None:
+        """Take one delivered frame; a payload that does not fit its message is dropped like a damaged frame."""
+        try:
+            if kind in (messages.TELEMETRY.number, messages.EVENT.number, messages.STOPPED.number):
+                return self._told(kind, payload, now_us)
+            if kind == messages.CLOCK.number:
+                self.keeper.answered(messages.CLOCK.unpack(payload), now_us)
+            elif kind < frames.GREETINGS_BELOW:
+                self._introduced(kind, payload, now_us)
+            else:
+                self._answered(kind, payload, now_us)
+        except ValueError:
+            self.damaged += 1
+        return None
+
+    def _told(self, kind: int, payload: bytes, now_us: int) -> Record | None:
+        """Take what the robot says by itself."""
+        now_ms = now_us // 1000
+        if kind == messages.EVENT.number:
+            event = event_of(payload, self.labels, now_ms)
+            self.holds_lease = self.holds_lease and event.event not in ("tripped", "disarmed")
+            if self.keeper.happened(event.now_ms, now_us, len(payload)):
+                self.trouble = self.trouble or restarted(event.event)
+            return event
+        if kind == messages.STOPPED.number:
+            stopped = stopped_of(payload, self.labels, now_ms)
+            self.stopped, self.holds_lease = True, False
+            self._compare(stopped.now_ms, self.silence.read_ms, LATE_MS, stopped.state, now_us, len(payload))
+            return stopped
+        told = self.selections.take(payload, self.labels, now_ms)
+        if told is None:
+            return None
+        self.last_ms = now_ms
+        self.last = told if isinstance(told, Telemetry) else self.last
+        state = told.state if isinstance(told, Telemetry) else str(told.values.get("state", ""))
+        self._compare(told.now_ms, self.silence.read_ms, LATE_MS, state, now_us, len(payload))
+        return told
+
+    def _answered(self, kind: int, payload: bytes, now_us: int) -> None:
+        """Take the answer to an order."""
+        taken = self.answers.take(kind, payload, self.labels, now_us // 1000)
+        if taken is None or taken.asked is None:
+            return
+        name, values = taken.asked.name, taken.asked.values
+        if isinstance(taken.answer, Status):
+            status = taken.answer
+            self._compare(status.uptime_ms, taken.asked.at_ms, SLACK_MS, status.state, now_us, len(payload))
+            self.keeper.clock.answered(taken.asked.at_ms, status.uptime_ms)
+        elif taken.answer is None and name == messages.ARM.name:
+            self.holds_lease = True
+        elif taken.answer is None and name == messages.SUBSCRIBE.name:
+            selection = selection_of(values)
+            self.silence.expect(selection.slot, selection.silence_ms)
+        if self.trouble:
+            del self.answers.said[taken.seq]  # it is of another start of the robot
+
+    def _introduced(self, kind: int, payload: bytes, now_us: int) -> None:
+        """Take a greeting: the answers to hello and dictionary, or to the probe of a silent line."""
+        handshake = self.handshake
+        if self.profile:
+            if kind == messages.IDENTITY.number:
+                self._recognised(messages.IDENTITY.unpack(payload), now_us, len(payload))
+            return
+        stranger = handshake.identity is None
+        handshake.take(kind, payload, now_us // 1000)
+        if stranger and handshake.identity is not None:
+            self.keeper.byte_ns = handshake.identity.byte_ns
+            self.keeper.clock.answered(handshake.begun_ms, handshake.identity.uptime_ms)
+            self.keeper.told(handshake.identity.uptime_ms, None, now_us, len(payload))
+
+    def _recognised(self, identity: Any, now_us: int, payload_bytes: int) -> None:
+        """Take the answer to the probe of a silent line."""
+        if identity.session != self.handshake.identity.session:
+            return
+        self.trouble = self.trouble or changed(self.handshake.identity, identity)
+        if self.greeted_ms is not None:
+            state = state_name(identity.state)
+            self._compare(identity.uptime_ms, self.greeted_ms, SLACK_MS, state, now_us, payload_bytes)
+        self.greeted_ms = None
+
+    def _compare(self, robot_ms: int, made_ms: int, slack_ms: int, state: str, now_us: int, payload_bytes: int) -> None:
+        """Take a robot time told after the host's `made_ms`; one before that is of a clock that has begun anew."""
+        if self.keeper.told(robot_ms, self.keeper.made_after(made_ms, slack_ms), now_us, payload_bytes):
+            self.trouble = self.trouble or restarted(state)

@@ -1,0 +1,152 @@
+"""What a robot can be told and asked, one method each; every one waits for the robot's answer.
+
+What cannot even be written into a message is refused here as the robot would refuse it; all other limits are its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TypeVar
+
+from host.answers import Answer
+from host.coils import CoilState
+from host.conversation import Conversation
+from host.errors import NONE, LinkLost, Refused
+from host.kept import Fault, FaultPage, Settings
+from host.profile import Profile
+from host.records import Status
+from host.selections import numbers_of
+from protocol import codes, messages
+
+PIECE = 192  # bytes of code in a message
+PIECES_AHEAD = 4
+WORD_MAX = 0xFFFF
+
+Kind = TypeVar("Kind")
+
+
+class Orders:
+    """The orders of one robot, given in the present session of `talk`."""
+
+    def __init__(self, talk: Conversation) -> None:
+        self.talk = talk
+
+    @property
+    def profile(self) -> Profile:
+        """Return the robot's own profile; there is one once it is connected."""
+        profile = self.talk.session.hearing.profile
+        if profile is None:
+            raise LinkLost("not connected yet: call connect() first")
+        return profile
+
+    def status(self) -> Status:
+        """Ask for the robot's state."""
+        return _expected(Status, self.talk.order(messages.STATUS_REQUEST), "its status")
+
+    def arm(self, lease_ms: int = 0, without: Iterable[str] = ()) -> None:
+        """Have every coil tested, take the lease and allow orders; 0 takes the robot's own lease.
+
+        The coils and groups of `without` are known to be broken: they are not tested, and never driven.
+        """
+        _within("arm", codes.LEASE_LIMIT, lease_ms, self.profile.session.lease_max_ms)
+        broken = self.profile.mask(without)
+        self.talk.order(messages.ARM, session=self.talk.session.number, lease_ms=lease_ms, without=broken)
+
+    def disarm(self) -> None:
+        """Switch all coils off and return the lease."""
+        self.talk.order(messages.DISARM)
+        self.talk.session.hearing.holds_lease = False
+
+    def clear(self) -> None:
+        """Leave the tripped state once its cause is gone."""
+        self.talk.order(messages.CLEAR)
+
+    def fire(self, coils: Iterable[str], duty_permille: int, hold_ms: int) -> None:
+        """Heat these coils or groups, each for that long."""
+        mask, limits = self.profile.mask(coils), self.profile.coil
+        _within("fire", codes.DUTY_LIMIT, duty_permille, limits.duty_max_permille)
+        _within("fire", codes.HOLD_LIMIT, hold_ms, limits.hold_max_ms)
+        self.talk.order(messages.FIRE, coils=mask, duty_permille=duty_permille, hold_ms=hold_ms)
+
+    def faults(self) -> list[Fault]:
+        """Return the faults that the robot has kept over resets and power cuts, newest first."""
+        faults: list[Fault] = []
+        while True:
+            page = _expected(FaultPage, self.talk.order(messages.FAULTS_REQUEST, skip=len(faults)), "its faults")
+            faults += page.faults
+            if not page.faults or len(faults) >= page.count:
+                return faults
+
+    def clear_faults(self) -> None:
+        """Have the robot forget the faults that it has kept."""
+        self.talk.order(messages.CLEAR_FAULTS)
+
+    def coils(self) -> dict[str, CoilState]:
+        """Return what the resistance of each coil says, as it was measured last."""
+        return _expected(dict, self.talk.order(messages.COILS_REQUEST), "its coils")
+
+    def settings(self) -> Settings:
+        """Ask for the robot's settings."""
+        return _expected(Settings, self.talk.order(messages.SETTINGS_REQUEST), "its settings")
+
+    def change(self, name: str, value: int, coil: str | None = None) -> None:
+        """Change a setting, one of SETTING_NAMES, and have the robot keep it."""
+        channel = NONE if coil is None else self.profile.mask([coil]).bit_length() - 1
+        self.talk.order(messages.SET, setting=messages.SETTING_NAMES.index(name), channel=channel, value=value)
+
+    def calibrate(self, without: Iterable[str] = ()) -> None:
+        """Have the resistance of every cold coil measured and kept, but for those known to be broken."""
+        broken = self.profile.mask(without)
+        self.talk.order(messages.CALIBRATE, session=self.talk.session.number, without=broken)
+
+    def subscribe(
+        self, period_ms: int, variables: Iterable[str] | None = None, on_change: bool = False, slot: int = 0
+    ) -> None:
+        """Have variables sent at that period, as Telemetry, or as Sample if they are named; 0 ends it.
+
+        On change: only when one of them is another than before, and at that distance at least. Each of the four slots
+        has its own.
+        """
+        named = b"" if variables is None else numbers_of(variables)
+        self.talk.order(messages.SUBSCRIBE, slot=slot, period_ms=period_ms, on_change=int(on_change), variables=named)
+
+    def upload(self, header: bytes, code: bytes, progress: Callable[[int], None] | None = None) -> None:
+        """Send a compiled program; `progress` is told how many bytes have been taken."""
+        talk = self.talk
+        talk.order(messages.PROGRAM, header=header)
+        pieces = [(at, code[at : at + PIECE]) for at in range(0, len(code), PIECE)]
+        for orders in (pieces[i : i + PIECES_AHEAD] for i in range(0, len(pieces), PIECES_AHEAD)):
+            sent = [talk.ask(messages.CODE, offset=at, code=piece) for at, piece in orders]
+            for seq, (at, piece) in zip(sent, orders, strict=True):
+                talk.answer(seq)
+                if progress:
+                    progress(at + len(piece))
+
+    def start(self, at_ms: int = messages.AT_ONCE) -> None:
+        """Run the program that was uploaded: at once, or when the robot's clock shows `at_ms`."""
+        self.talk.order(messages.START, at_ms=at_ms)
+
+    def ready(self) -> None:
+        """Have the program that was uploaded wait for the next `sync`."""
+        self.talk.order(messages.START, at_ms=messages.AT_SYNC)
+
+    def service(self) -> None:
+        """Have the robot end its program and open its console, once; refused unless it is at rest."""
+        self.talk.order(messages.SERVICE)
+
+    def cancel(self) -> None:
+        """End the running program; all coils off, still armed."""
+        self.talk.order(messages.CANCEL)
+
+
+def _expected(kind: type[Kind], answer: Answer | None, what: str) -> Kind:
+    """Return an answer that is of the right kind."""
+    if not isinstance(answer, kind):
+        raise LinkLost(f"the robot answered a request for {what} with something else")
+    return answer
+
+
+def _within(request: str, code: int, value: int, limit: int) -> None:
+    """Refuse, as the robot would, a value that is beyond what its message can carry."""
+    if value > WORD_MAX:
+        raise Refused(request, code, value, limit)
