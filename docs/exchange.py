@@ -31,6 +31,7 @@ class Conversation:
         self.robot.grant_bytes = CREDIT_BYTES
         self.now_ms = 0
         self.lines: list[str] = []
+        self._listener = frames.Decoder(self.crc, SESSION)
 
     def say(self, words: str) -> None:
         """Write a line of explanation."""
@@ -64,18 +65,15 @@ class Conversation:
         wire = sender.poll(self.now_ms)
         delivered = []
         for place, stuffed in enumerate(wire.split(b"\x00")[:-1]):
-            self.note(who, stuffed + b"\x00", described(stuffed) + (" -- lost" if place == lost else ""))
+            (frame,) = self._listener.feed(stuffed + b"\x00")
+            self.note(who, stuffed + b"\x00", described(frame) + (" -- lost" if place == lost else ""))
             if place != lost:
                 delivered += receiver.receive(stuffed + b"\x00", self.now_ms)
         return delivered
 
 
-def described(stuffed: bytes) -> str:
+def described(frame: frames.Frame) -> str:
     """Return what a frame says: name, numbers, fields."""
-    body = frames.decode(stuffed)
-    assert body is not None
-    frame = frames.frame_of(body[:-4])
-    assert frame is not None
     row = next(row for row in rows() if row.number == frame.kind)
     values = message(row).unpack(frame.payload)
     told = [_told(place.name, place.enum, value) for place, value in zip(row.fields, values, strict=True)]

@@ -4,8 +4,6 @@ It is handed the bytes that arrived and the time, and hands back the bytes to se
 them, and must never allocate memory, is its `control`.
 """
 
-from binascii import crc32
-
 from firmware.commands import Commands
 from firmware.control import Control
 from firmware.greetings import Greetings
@@ -30,7 +28,7 @@ class Core:
         self.board = board
         self.profile = profile
         self.boot = boot
-        self.dictionary = messages.dictionary(profile.text)
+        self.dictionary = board.dictionary()
         self.state = self.was = messages.BOOT  # now, and when this step began
         self.version = VERSION
         self.code = 0  # of the last fault
@@ -47,7 +45,7 @@ class Core:
         self.attitude, self.player = self.control.attitude, self.control.player
         self.commands = Commands(self)
         self.greetings = Greetings(self)
-        self.link = Link(crc32(self.dictionary), self.records.settings.node, True)
+        self.link = Link(self.dictionary.crc, self.records.settings.node, True)
         self.link.grant_bytes = board.credit_bytes
         self.link.byte_ns = board.byte_ns
         self.reports = Reports(self)

@@ -50,7 +50,7 @@ class Greetings:
         pairing = core.pairing
         identity = messages.IDENTITY.pack(
             session=hello.session, boot=core.boot, uptime_ms=core.now_ms & 0xFFFFFFFF,
-            dictionary_crc=core.link.decoder.dictionary_crc, dictionary_bytes=len(core.dictionary),
+            dictionary_crc=core.link.decoder.dictionary_crc, dictionary_bytes=core.dictionary.size,
             version=frames.VERSION, state=core.state, role=messages.HOLDER if free else messages.VIEWER,
             node=core.link.node, secured=pairing.secured, slots=WINDOW, bytes=core.link.grant_bytes,
             byte_ns=core.link.byte_ns, holder=core.holder(), step=core.player.step, nonce_a=pairing.nonce[0],
@@ -59,8 +59,7 @@ class Greetings:
         core.link.post(messages.IDENTITY.number, identity)
 
     def _dictionary(self, asked) -> None:
-        count = min(asked.count, PAGE)
-        page = self._core.dictionary[asked.offset : asked.offset + count] if asked.part == 0 else b""
+        page = self._core.dictionary.page(asked.part, asked.offset, min(asked.count, PAGE))
         payload = messages.DICTIONARY_PAGE.pack(part=asked.part, offset=asked.offset, text=page)
         self._core.link.post(messages.DICTIONARY_PAGE.number, payload)
 

@@ -1,7 +1,6 @@
 """The robot's profile as the firmware uses it: labels, wiring and limits, read from JSON in flash.
 
-The text is kept as it stands: it is part of the dictionary that the host reads, and its CRC-32 is the robot's mark on
-every program.
+The text itself is part of the dictionary that the host reads, and its CRC-32 is the robot's mark on every program.
 """
 
 import json
@@ -24,7 +23,6 @@ class Profile:
         data = json.loads(text)
         if data["format"] != 1:
             raise ValueError(f"profile format {data['format']}, this firmware reads 1")
-        self.text = text
         self.crc = crc32(text)
         self.robot = data["robot"]
         self.channels = [Channel(row["label"], row["chip"], row["output"]) for row in data["channels"]]

@@ -126,10 +126,6 @@ class Message:
             raise ValueError(f"{self.name}: {len(payload)} bytes, expected {size}")
         return self._tuple(*struct.unpack(self._format, payload[:size]), payload[size:])
 
-    def line(self) -> str:
-        """Return this row as the dictionary prints it: `20 fire coils:I duty_permille:H hold_ms:H`."""
-        return " ".join([str(self.number), self.name] + [f"{field.name}:{field.letter}" for field in self.fields])
-
     def _learn(self) -> None:
         self._fields = tuple(self._names.split(" ")) if self._names else ()
         self._open = self._letters.endswith("s")
@@ -378,9 +374,3 @@ def by_number(number: int) -> Message | None:
         if message.number == number:
             return message
     return None
-
-
-def dictionary(profile: bytes) -> bytes:
-    """Return the dictionary of a robot: a line for each message, a blank line, its profile as it stands in flash."""
-    lines = [message.line() for message in MESSAGES]
-    return ("\n".join(lines) + "\n\n").encode() + profile

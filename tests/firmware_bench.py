@@ -8,11 +8,13 @@ from array import array
 from pathlib import Path
 
 from firmware.core import Core
+from firmware.dictionary import Dictionary
 from firmware.profile import Profile
 from protocol import frames, messages, program, variables
 from protocol.link import Link
 
-PROFILE = Path(__file__).parent.parent / "firmware" / "robots" / "circular.json"
+ROOT = Path(__file__).parents[1]
+PROFILE = ROOT / "firmware" / "robots" / "circular.json"
 BALL = PROFILE.with_name("sphere-a.json")  # a robot with an attitude sensor
 SESSION = 77
 
@@ -183,9 +185,16 @@ class Table:
         self.closed = True
         self.decidegc = 250
         self.flash = Flash()
+        self.robot_file = PROFILE
 
     def open(self, path: str, mode: str):
         return self.flash.open(path, mode)
+
+    def dictionary(self) -> Dictionary:
+        return Dictionary(self._text, "")
+
+    def _text(self, path: str, mode: str):
+        return (self.robot_file if path == "/robot.json" else ROOT / path.lstrip("/")).open(mode)
 
     def pwm(self, address: int) -> Chip:
         return self.chip
@@ -228,6 +237,7 @@ class Rig:
 
     def __init__(self, profile: Path = PROFILE) -> None:
         self.board = Table()
+        self.board.robot_file = profile
         self.profile = Profile(profile.read_bytes())
         self.board.supply.mv = self.profile.supply.nominal_mv
         self.core = Core(self.board, self.profile, boot=1)

@@ -12,6 +12,7 @@ from binascii import crc32, hexlify
 from firmware import core
 from firmware.control import Control
 from firmware.core import Core
+from firmware.dictionary import Dictionary
 from firmware.profile import Profile
 from protocol import messages, program
 from protocol.frames import STOP
@@ -120,6 +121,9 @@ class Table:
     def open(self, path, mode):
         raise OSError(2, "ENOENT")
 
+    def dictionary(self):
+        return Dictionary(on_flash, "")
+
     def imu(self, address):
         return Imu()
 
@@ -147,6 +151,11 @@ class Table:
 
     def board_decidegc(self):
         return 251
+
+
+def on_flash(path, mode):
+    """Open a file of the slot that runs."""
+    return open(sys.argv[1] if path == "/robot.json" else __file__.rsplit("/", 2)[0] + path, mode)
 
 
 CIRCLE = ((0, 8197), (-5796, 5796), (-8197, 0), (-5796, -5796), (0, -8197), (5796, -5796), (8197, 0), (5796, 5796))
@@ -204,7 +213,7 @@ def orders(profile):
     code = rolling() if profile.imu_address else script()
     return [
         (0, messages.HELLO, {"version": 2, "session": SESSION, "attach": 0, "nonce_a": 0, "nonce_b": 0}),
-        (20, messages.DICTIONARY, {"offset": 0}),
+        (20, messages.DICTIONARY, {"part": 0, "offset": 0, "count": 200}),
         (30, messages.FIRE, {"coils": 1, "duty_permille": 500, "hold_ms": 100}),
         (40, messages.SUBSCRIBE, {"slot": 0, "period_ms": 50, "on_change": 0, "variables": b""}),
         (50, messages.ARM, {"session": SESSION, "lease_ms": 0, "without": 0b100}),
@@ -260,4 +269,5 @@ if LOCKED:
     session(Core(Table(), profile, 1), profile)
 else:
     session(Core(Table(), profile, 1), profile)
-print("dictionary", crc32(messages.dictionary(profile.text)))
+dictionary = Table().dictionary()
+print("dictionary", dictionary.crc, dictionary.size, crc32(dictionary.page(1, 100, 100)))

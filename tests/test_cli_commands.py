@@ -9,6 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from host.definitions import dictionary_of
 from protocol import causes, codes, messages
 from tests.fake_robot import PROFILE, FakeLine, FakeRobot
 
@@ -234,7 +235,7 @@ def test_a_refusal_exits_4_and_tells_its_code(softrig, peer, line):
 
 
 def test_another_dictionary_exits_5(softrig, peer, monkeypatch, line):
-    line.robot = FakeRobot(dictionary=messages.dictionary(PROFILE).replace(b"fire ", b"heat "))
+    line.robot = FakeRobot(dictionary=dictionary_of(PROFILE).replace(b"fire ", b"heat "))
 
     told = softrig("info")
 

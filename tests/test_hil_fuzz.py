@@ -9,13 +9,14 @@ from binascii import crc32
 import pytest
 
 from hil_sim.link import open_link
+from host.definitions import dictionary_of
 from host.errors import SoftrigError
 from host.robot import Robot
 from protocol import frames, messages, program
 from protocol.link import Link
 from tests.fake_robot import LABELS, PROFILE
 
-SEED = crc32(messages.dictionary(PROFILE))
+SEED = crc32(dictionary_of(PROFILE))
 ROBOT = crc32(PROFILE)
 BYTE_S = 10 / 115_200
 TWO_STEPS_S = 0.010

@@ -1,4 +1,4 @@
-"""The table of messages: what it packs, what it refuses, and the dictionary made from it."""
+"""The table of messages: what it packs and what it refuses."""
 
 import pytest
 
@@ -33,13 +33,6 @@ def test_a_last_field_of_text_takes_the_rest():
     page = messages.DICTIONARY_PAGE.unpack(messages.DICTIONARY_PAGE.pack(part=0, offset=7, text=b"abc"))
 
     assert (page.part, page.offset, page.text) == (0, 7, b"abc")
-
-
-def test_the_dictionary_is_the_table_then_a_blank_line_then_the_profile():
-    table, profile = messages.dictionary(b'{"robot": "x"}').split(b"\n\n")
-
-    assert b"20 fire coils:I duty_permille:H hold_ms:H" in table.split(b"\n")
-    assert profile == b'{"robot": "x"}'
 
 
 def test_every_code_says_cause_deed_and_remedy_under_a_number_of_its_own():

@@ -9,9 +9,9 @@ from zlib import crc32
 
 from hil_sim.bench import Bench
 from hil_sim.journal import FAULT
+from host.definitions import dictionary_of
 from host.errors import SoftrigError
 from host.profile import Profile, read_profile
-from protocol import messages
 from tests.invariants import Excuse, Run, broken, excuse_of, spells_of
 from tests.orders import Ledger
 
@@ -47,7 +47,7 @@ class Witness:
         profile = _profile(text)
         if profile is None:
             return None
-        ledger = Ledger(profile, crc32(messages.dictionary(text)))
+        ledger = Ledger(profile, crc32(dictionary_of(text)))
         for time_us, kind, data in self._line:
             if kind == RESET:
                 ledger.reset(time_us)

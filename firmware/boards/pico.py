@@ -6,11 +6,13 @@ retriggerable monostable of 50 ms) and the emergency-stop loop is closed: a hung
 MCP2515 joins the robot to a CAN bus where it is fitted.
 """
 
+import sys
 import time
 
 from machine import ADC, I2C, SPI, UART, WDT, Pin, unique_id
 
 from firmware.canport import CanPort
+from firmware.dictionary import Dictionary
 from firmware.drivers.ina226 import Ina226
 from firmware.drivers.lsm6ds3tr import Lsm6ds3tr
 from firmware.drivers.mcp2515 import Mcp2515
@@ -146,6 +148,10 @@ class Board:
             begin_ms = self._quiet_ms if time.ticks_diff(self._quiet_ms, now_ms) > 0 else now_ms
             self._quiet_ms = time.ticks_add(begin_ms, 1 + len(data) * 10_000 // self._baud)
             self._uart.write(data)
+
+    def dictionary(self) -> Dictionary:
+        """Return the dictionary of the slot that runs."""
+        return Dictionary(open, sys.path[0])
 
     def open(self, path: str, mode: str):
         """Return a file on the flash; the next period of the watchdog lasts as long as the slowest writing."""
