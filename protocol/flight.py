@@ -19,17 +19,18 @@ PROBE_MS = 400  # without credit one frame is tried after that long: what gave t
 class Waiting:
     """A reliable frame that its receiver has not acknowledged."""
 
+    tries = 0
+    arrived = False
+    sent_ms = 0
+    ahead_ms = 0  # what the line had to carry before its end, when it was sent
+    again_ms = 0
+    order = 0  # among all that was sent
+
     def __init__(self, kind: int, number: int, payload: bytes, size: int) -> None:
         self.kind = kind
         self.number = number
         self.payload = payload
         self.size = size  # on the wire
-        self.tries = 0
-        self.arrived = False
-        self.sent_ms = 0
-        self.ahead_ms = 0  # what the line had to carry before its end, when it was sent
-        self.again_ms = 0
-        self.order = 0  # among all that was sent
 
 
 class Flight:
@@ -59,11 +60,7 @@ class Flight:
 
     def due(self, now_ms: int) -> list:
         """Return the frames to send now, oldest first."""
-        due = []
-        for waiting in self._allowed(now_ms):
-            if waiting.tries == 0 or now_ms - waiting.again_ms >= 0:
-                due.append(waiting)
-        return due
+        return [each for each in self._allowed(now_ms) if each.tries == 0 or now_ms - each.again_ms >= 0]
 
     def due_ms(self, now_ms: int) -> int | None:
         """Return when a frame is due at the latest; None: nothing waits."""
@@ -74,28 +71,32 @@ class Flight:
 
     def sent(self, waiting: Waiting, now_ms: int, byte_ns: int) -> None:
         """Note that a frame is on its way now."""
-        self.resent += waiting.tries > 0
+        wait_ms = self._rto_ms
+        if waiting.tries:
+            wait_ms = min(wait_ms << min(waiting.tries, 5), RTO_MAX_MS)
+            self.resent += 1
         waiting.tries += 1
         waiting.sent_ms = now_ms
-        waiting.ahead_ms = self._ahead(waiting) * byte_ns // 1_000_000
-        behind_ms = FRAME_MAX * byte_ns // 1_000_000  # its acknowledgement may have to wait for a whole frame to end
-        backed_off_ms = min(self._rto_ms << min(waiting.tries - 1, 5), RTO_MAX_MS)
-        waiting.again_ms = now_ms + waiting.ahead_ms + behind_ms + backed_off_ms
+        if byte_ns:
+            waiting.ahead_ms = self._ahead(waiting) * byte_ns // 1_000_000
+            wait_ms += waiting.ahead_ms + FRAME_MAX * byte_ns // 1_000_000  # a whole frame may go before the answer
+        waiting.again_ms = now_ms + wait_ms
         self._order += 1
         waiting.order = self._order
         self.broken = self.broken or waiting.tries > TRIES_MAX
 
     def acknowledged(self, ack: int, have: int, now_ms: int) -> None:
         """Take that all frames before the number that ends in `ack` have arrived, and after it those of the mask."""
-        while self.waiting and 0 < (ack - self.waiting[0].number) & 255 <= WINDOW and self.waiting[0].tries:
-            self._arrived(self.waiting.pop(0), now_ms)
-        if not have or not self.waiting or (ack - self.waiting[0].number) & 255:
+        queue = self.waiting
+        while queue and 0 < (ack - queue[0].number) & 255 <= WINDOW and queue[0].tries:
+            self._arrived(queue.pop(0), now_ms)
+        if not have or not queue or (ack - queue[0].number) & 255:
             return
-        for waiting in self.waiting[1 : WINDOW + 1]:
-            place = waiting.number - self.waiting[0].number - 1
+        for waiting in queue[1 : WINDOW + 1]:
+            place = waiting.number - queue[0].number - 1
             if have >> place & 1 and waiting.tries:
                 self._arrived(waiting, now_ms)
-        for waiting in self.waiting[:WINDOW]:
+        for waiting in queue[:WINDOW]:
             if waiting.tries and not waiting.arrived and waiting.order < self._newest:
                 waiting.again_ms = now_ms
 
@@ -105,7 +106,9 @@ class Flight:
         if not slots and now_ms - self._news_ms >= PROBE_MS:
             slots = 1
         allowed, flying = [], 0
-        for place, waiting in enumerate(self.waiting[:WINDOW]):
+        for place, waiting in enumerate(self.waiting):
+            if place >= WINDOW:
+                break
             if waiting.arrived:
                 continue
             if waiting.tries == 0 and (place >= slots or (flying and flying + waiting.size > self._bytes)):
@@ -130,7 +133,8 @@ class Flight:
             return
         waiting.arrived = True
         if waiting.tries == 1:
-            self._newest = max(self._newest, waiting.order)
+            if waiting.order > self._newest:
+                self._newest = waiting.order
             self._measure(max(0, now_ms - waiting.sent_ms - waiting.ahead_ms))
 
     def _measure(self, rtt_ms: int) -> None:
