@@ -143,11 +143,12 @@ class Link:
         delivered = []
         begun = False  # the session that was offered when these bytes came: they were decoded all at once
         for frame in self.decoder.feed(data):
+            kind = frame.kind
             if not self._is_ours(frame):
                 continue
-            if frame.kind < frames.GREETINGS_BELOW:
-                delivered.append(Received(frame.kind, frame.seq, frame.payload))
-            elif frames.is_open(frame.kind):
+            if kind < frames.GREETINGS_BELOW:
+                delivered.append(Received(kind, frame.seq, frame.payload))
+            elif frames.OPEN_FROM <= kind < frames.OPEN_BELOW:
                 self._take_open(frame, delivered)
             elif frame.offered and not begun:
                 if self._begins(frame):
@@ -212,9 +213,9 @@ class Link:
             if number < 0:
                 self.forged += 1
                 return
-        reliable = frame.flags & frames.RELIABLE != 0
+        reliable = frame.flags & frames.RELIABLE
         if not (self._is_new(number) if reliable else number >= self._next_posted):
-            self._ack_due = self._ack_due or reliable
+            self._ack_due = self._ack_due or reliable != 0
             self.duplicates += 1
             return
         self.heard_ms = now_ms
@@ -254,6 +255,10 @@ class Link:
     def _take_reliable(self, frame, number: int, delivered: list) -> None:
         self._ack_due = True
         self._retell -= self._retell > 0
+        if number == self._next_receive and not self._ahead:
+            self._next_receive = number + 1
+            delivered.append(Received(frame.kind, frame.seq, frame.payload))
+            return
         self._ahead.append((number, frame))
         while True:
             due = [ahead for ahead in self._ahead if ahead[0] == self._next_receive]
@@ -266,7 +271,9 @@ class Link:
 
     def _is_new(self, number: int) -> bool:
         """Return whether a reliable frame of that number may come now, and has not yet."""
-        if not 0 <= number - self._next_receive < WINDOW:
+        if number == self._next_receive:
+            return True
+        if not 0 < number - self._next_receive < WINDOW:
             return False
         return number not in [ahead[0] for ahead in self._ahead]
 
@@ -320,7 +327,7 @@ class Link:
             self._told_slots = self._slots()
             self._retell = WINDOW
         number, self._next_post = self._next_post, self._next_post + 1
-        payload = ALIVE.pack(have=have, slots=self._told_slots, bytes=self.grant_bytes)
+        payload = ALIVE.packed(have, self._told_slots, self.grant_bytes)
         return self._line(ALIVE.number, number, payload, 0)
 
     def _slots(self) -> int:
@@ -336,7 +343,7 @@ class Link:
         node = self.node if self._addressed else 0
         if kind < frames.GREETINGS_BELOW:
             return frames.encode(frames.seal(kind, 0, 0, payload, 0, 0, node))
-        if frames.is_open(kind):
+        if frames.OPEN_FROM <= kind < frames.OPEN_BELOW:
             return frames.encode(frames.seal(kind, number & 255, 0, payload, self.decoder.dictionary_crc, flags, node))
         if not self._ahead and not self._retell and self._told_slots == self._slots():
             self._ack_due = False  # this frame carries all there is to say
