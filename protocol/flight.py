@@ -133,8 +133,7 @@ class Flight:
             return
         waiting.arrived = True
         if waiting.tries == 1:
-            if waiting.order > self._newest:
-                self._newest = waiting.order
+            self._newest = max(self._newest, waiting.order)
             self._measure(max(0, now_ms - waiting.sent_ms - waiting.ahead_ms))
 
     def _measure(self, rtt_ms: int) -> None:
