@@ -331,8 +331,11 @@ class Link:
         return self._line(ALIVE.number, number, payload, 0)
 
     def _slots(self) -> int:
-        """Return for how many more frames there would be room to answer."""
-        return max(0, min(WINDOW, self.room() - RESERVE))
+        """Return for how many more frames there would be room to answer; a host answers none.
+
+        If both ends kept frames back for want of room, both would wait for each other.
+        """
+        return max(0, min(WINDOW, self.room() - RESERVE)) if self._device else WINDOW
 
     def _opens(self) -> bool:
         """Return whether the other end waits for credit that there is again."""
