@@ -22,6 +22,7 @@ from select import select
 from hil_sim.bench import Bench, Parts
 from hil_sim.worlds.image import Image
 from hil_sim.worlds.micropython import interpreter
+from hil_sim.worlds.world import CTRL_C
 from tests.bench_fakes import FakePlant
 from tests.slot_bench import said
 
@@ -47,6 +48,7 @@ class FakePico:
         self.port = os.ttyname(line)
         self._line = line
         self._console: subprocess.Popen | None = None
+        self.ordered = threading.Event()  # set: its program was ordered to open the console
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._live)
 
@@ -78,13 +80,19 @@ class FakePico:
         """Run the program until Ctrl-C; return whether the console has the board now."""
         if self._found or not (self.folder / "main.py").exists():
             return True
-        bench = self._settled()
+        bench, pressed = self._settled(), False
         while "softrig: service" not in said(bench):
             if self._ended.is_set():
                 return False
-            if not self._unread():
+            if not (pressed or self._unread()):
                 os.write(self._host, f"{said(bench)[-1]}\r\n".encode())
             if select([self._host], [], [], 0.05)[0] and b"\x03" in os.read(self._host, 4096):
+                pressed = True
+                bench.world.interrupt()
+                bench.run(1)
+            if self.ordered.is_set():
+                self.ordered.clear()
+                bench.world._life.heed(CTRL_C)  # as when the program itself raises KeyboardInterrupt
                 bench.world.interrupt()
                 bench.run(1)
         self._keep(bench)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import click
 
 import host
-from host.cli.options import robot_option
+from host.cli.options import given_key, robot_option
 from host.cli.output import note, writing
 from host.cli.scripts import place, proven
 from host.errors import BadRequest
@@ -62,7 +62,7 @@ def recorded(figure: Figure, robot: str | None) -> Recording:
     address = place(tree, robot) + (figure.settings if robot is None else "")
     link = open_link(address)
     keeper = Keeper(observer=link.observer)
-    with Robot(link, keeper) as face:
+    with Robot(link, keeper, given_key()) as face:
         face.connect()
         keeper.name_coils(face.profile.labels)
         keeper.recording.title = f"{figure.script} on {address}"

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from host.cli.options import json_option, robot_option, without_option
+from host.cli.options import given_key, json_option, robot_option, without_option
 from host.cli.output import emit, json_line, note, writing
 from host.cli.progress import shown
 from host.cli.scripts import place, proven
@@ -46,13 +46,13 @@ def command(
     Ctrl-C sends stop, waits for the robot's answer and says what it was.
     """
     tree = load(script)
-    address = place(tree, robot)
+    address, key = place(tree, robot), given_key()
     if plot_path:
         check_pictures(plot_path)
     with LogWriter(log_path) if log_path else nullcontext() as log:
         link = open_link(address)
         keeper = Keeper(log, link.observer if log_path or plot_path else None)
-        with Robot(link, keeper) as face:
+        with Robot(link, keeper, key) as face:
             face.connect()
             keeper.name_coils(face.profile.labels)
             keeper.recording.title = f"{Path(script).name} on {address}"

@@ -23,6 +23,9 @@ OPEN_S = 25.0  # to reset, to be listed by USB again, to answer
 ABSENT_S = 5.0  # a port that is not there by then was never there
 PAUSE_S = 0.3
 CHUNK_BYTES = 512
+OPENED_BY = (
+    "a robot with a pairing key opens it only by --robot ADDRESS, any robot with GP22 bridged to ground at reset"
+)
 # What main.py has defined is at hand on the console; its `change` writes under a watchdog that is long enough.
 RAN = "import sys\nprint(sys.path[0] in ('/a', '/b'))"
 RESET = "import machine, time\ntime.sleep_ms(100)\nmachine.reset()"  # once the console has acknowledged it
@@ -137,7 +140,7 @@ def _opened(port: str) -> Any:
             if time.monotonic() - begun_s >= patience_s.get(type(error), OPEN_S):
                 raise
         if time.monotonic() - begun_s >= OPEN_S:
-            raise NotOurs(f"{port}: the board does not go into service mode; bridge GP22 to ground and reset it")
+            raise NotOurs(f"{port}: the board does not go into service mode; {OPENED_BY}")
         time.sleep(PAUSE_S)
 
 
@@ -193,7 +196,8 @@ def _told(port: str) -> Iterator[None]:
         raise NotOurs(f"{port}: the board answers: {last[-1] if last else 'nothing'}") from error
     except TransportError as error:
         busy = "failed to access" in str(error)
-        raise (PortBusy if busy else NotOurs)(f"{port}: no console of MicroPython there ({error})") from error
+        hint = "" if busy else f"; {OPENED_BY}"
+        raise (PortBusy if busy else NotOurs)(f"{port}: no console of MicroPython there ({error}){hint}") from error
     except FileNotFoundError:
         raise
     except OSError as error:
