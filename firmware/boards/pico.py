@@ -11,11 +11,9 @@ import time
 
 from machine import ADC, I2C, SPI, UART, WDT, Pin, unique_id
 
-from firmware.canport import CanPort
 from firmware.dictionary import Dictionary
 from firmware.drivers.ina226 import Ina226
 from firmware.drivers.lsm6ds3tr import Lsm6ds3tr
-from firmware.drivers.mcp2515 import Mcp2515
 from firmware.drivers.ntc import decidegc
 from firmware.drivers.pca9685 import Pca9685
 
@@ -64,8 +62,14 @@ class Board:
         """Return the driver of the attitude sensor at that address."""
         return Lsm6ds3tr(self._bus, address)
 
-    def can(self, node: int) -> CanPort | None:
-        """Return the CAN port of a robot with that number, or None when there is no controller."""
+    def can(self, node: int):
+        """Return the CAN port of a robot with that number, or None when there is no controller.
+
+        What it takes is loaded only here: a robot without a number has that memory for itself.
+        """
+        from firmware.canport import CanPort  # noqa: PLC0415
+        from firmware.drivers.mcp2515 import Mcp2515  # noqa: PLC0415
+
         spi = SPI(0, SPI_HZ, sck=Pin(SCK), mosi=Pin(MOSI), miso=Pin(MISO))
         chip = Mcp2515(spi, Pin(CAN_SELECT, Pin.OUT, value=1), CRYSTAL_HZ)
         try:
