@@ -21,7 +21,7 @@ from mcap.writer import Writer
 
 from host.errors import BadRequest
 from host.recording import Scene
-from host.records import Event, Record, Telemetry, as_json
+from host.records import Event, Record, Sample, Telemetry, row_of
 
 CHUNK_BYTES = 64 * 1024
 CHUNK_MS = 1000
@@ -46,6 +46,7 @@ TOPICS: dict[str, dict[str, Any]] = {
         "pitch_deg": {"type": ["number", "null"]},
         "down": {"type": ["string", "null"]},
     },
+    "samples": {**dict.fromkeys(("host_ms", "now_ms", "slot"), NUMBER), "values": {"type": "object"}},
     "events": {
         **dict.fromkeys(("host_ms", "now_ms", "code", "step", "value"), NUMBER),
         "event": TEXT,
@@ -100,11 +101,11 @@ class LogWriter:
 
     def record(self, record: Record) -> None:
         """Keep what the robot told; a fault closes the chunk."""
-        row = as_json(record)
+        row = row_of(record, self.labels)
         if isinstance(record, Telemetry):
-            row["duty_permille"] = dict(zip(self.labels, record.duty_permille, strict=False))
-            row["temperature_degc"] = dict(zip(self.labels, record.temperature_degc, strict=False))
             self._add("telemetry", record.host_ms, row)
+        elif isinstance(record, Sample):
+            self._add("samples", record.host_ms, row)
         elif isinstance(record, Event):
             self._add("events", record.host_ms, row)
             if record.code:

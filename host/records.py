@@ -178,3 +178,12 @@ def coil_names(mask: int, labels: tuple[str, ...]) -> tuple[str, ...]:
 def as_json(record: Any) -> dict[str, Any]:
     """Return the record's fields by name, as they stand in logs and on `--json`."""
     return asdict(record)
+
+
+def row_of(record: Record, labels: tuple[str, ...]) -> dict[str, Any]:
+    """Return the record's fields by name, with what there is for each coil by its label."""
+    row = as_json(record)
+    if isinstance(record, Telemetry):
+        for name in ("duty_permille", "temperature_degc"):
+            row[name] = dict(zip(labels, row[name], strict=False))
+    return row

@@ -23,6 +23,7 @@ COMMANDS = {
     "ports": "List serial ports and running benches.",
     "info": "Say who a robot is and what it allows.",
     "status": "Ask a robot for its state.",
+    "watch": "Watch variables of a robot as they change.",
     "arm": "Take a robot's lease, so that it takes orders.",
     "disarm": "Switch all coils off and return the lease.",
     "fire": "Heat coils for a limited time.",
