@@ -191,7 +191,8 @@ class Commands:
             supply_mv=core.sense.supply_mv, current_ma=core.sense.current_ma,
             board_decidegc=core.sense.board_decidegc, roll_decideg=core.attitude.roll_decideg(),
             pitch_decideg=core.attitude.pitch_decideg(), down=core.attitude.down_channel(),
-            dropped=core.link.decoder.dropped & 0xFFFF, overruns=core.overruns & 0xFFFF,
+            dropped=core.link.decoder.dropped & 0xFFFF, forged=core.link.forged & 0xFFFF,
+            repeated=core.link.duplicates & 0xFFFF, overruns=core.overruns & 0xFFFF,
         )  # fmt: skip
         return True
 

@@ -69,6 +69,8 @@ class Status:
     current_ma: int
     board_degc: float
     dropped: int
+    forged: int
+    repeated: int
     overruns: int
     roll_deg: float | None = None
     pitch_deg: float | None = None
@@ -147,6 +149,8 @@ def status_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Status:
         current_ma=row.current_ma,
         board_degc=row.board_decidegc / 10,
         dropped=row.dropped,
+        forged=row.forged,
+        repeated=row.repeated,
         overruns=row.overruns,
         **_attitude(row.roll_decideg, row.pitch_decideg, row.down, labels),
     )

@@ -165,6 +165,7 @@ class Session:
             "frames_resent": link.resent,
             "frames_repeated": link.duplicates,
             "telemetry_missed": sum(self.hearing.selections.missed().values()),
+            "frames_forged": link.forged,
             "frames_damaged": link.decoder.dropped + self.hearing.damaged - self._damaged_before,
             "round_trip_ms": link.rtt_ms,
             "clock_offset_ms": round(figures.offset_ms, 2) if figures else None,

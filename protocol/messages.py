@@ -293,6 +293,8 @@ STATUS = Message(
     Field("pitch_decideg", "h"),  # Turn forward since upright, -180 to 180 deg; 0 when the attitude is not known.
     Field("down", "B"),  # Channel of the coil whose direction is nearest to down; 255: the attitude is not known.
     Field("dropped", "H"),  # Damaged frames since boot, modulo 65536.
+    Field("forged", "H"),  # Frames without the tag that the pairing key makes, since boot, modulo 65536.
+    Field("repeated", "H"),  # Frames of this session that were heard before, modulo 65536.
     Field("overruns", "H"),  # Control steps that came late, modulo 65536.
 )  # fmt: skip
 FAULTS = Message(

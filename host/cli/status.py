@@ -48,4 +48,5 @@ def _lines(status: Status, line: dict[str, int | None]) -> Iterator[str]:
     yield f"  lease       {f'{status.lease_ms} ms left' if status.lease_ms else 'free'}"
     yield f"  up          {status.uptime_ms / 1000:.1f} s, {status.overruns} late control steps"
     trip = "-" if line["round_trip_ms"] is None else line["round_trip_ms"]
-    yield f"  line        {status.dropped} frames damaged on their way to the robot, round trip {trip} ms"
+    forged = f", {status.forged} forged" if status.forged else ""
+    yield f"  line        {status.dropped} frames damaged on their way to the robot{forged}, round trip {trip} ms"
