@@ -138,6 +138,8 @@ class Flight:
 
     def _measure(self, rtt_ms: int) -> None:
         """Adapt the time-out to the round trip, less the time that the bytes took."""
+        if rtt_ms == self.rtt_ms and not self._spread_ms:
+            return
         if self.rtt_ms is None:
             self.rtt_ms, self._spread_ms = rtt_ms, rtt_ms // 2
         else:
