@@ -207,14 +207,15 @@ class Link:
         if self.session == 0:
             self.foreign += 1
             return
-        number = self._number(frame)
+        reliable = frame.flags & frames.RELIABLE
+        in_turn = reliable and frame.seq == self._next_receive & 255
+        number = self._next_receive if in_turn else self._number(frame)
         if self.key:
             number = self._true_number(frame, number)
             if number < 0:
                 self.forged += 1
                 return
-        reliable = frame.flags & frames.RELIABLE
-        if not (self._is_new(number) if reliable else number >= self._next_posted):
+        if not (in_turn or (self._is_new(number) if reliable else number >= self._next_posted)):
             self._ack_due = self._ack_due or reliable != 0
             self.duplicates += 1
             return
@@ -271,9 +272,7 @@ class Link:
 
     def _is_new(self, number: int) -> bool:
         """Return whether a reliable frame of that number may come now, and has not yet."""
-        if number == self._next_receive:
-            return True
-        if not 0 < number - self._next_receive < WINDOW:
+        if not 0 <= number - self._next_receive < WINDOW:
             return False
         return number not in [ahead[0] for ahead in self._ahead]
 
@@ -335,7 +334,10 @@ class Link:
 
         If both ends kept frames back for want of room, both would wait for each other.
         """
-        return max(0, min(WINDOW, self.room() - RESERVE)) if self._device else WINDOW
+        if not self._device:
+            return WINDOW
+        left = QUEUE_MAX - RESERVE - len(self.flight.waiting)
+        return max(0, left) if left < WINDOW else WINDOW
 
     def _opens(self) -> bool:
         """Return whether the other end waits for credit that there is again."""
