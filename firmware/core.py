@@ -146,8 +146,9 @@ class Core:
             return True
         if self.pairing.secured == messages.KEY_DAMAGED:
             return False
+        if not self.link.offer(hello.session, key):
+            return False
         self._attach = hello.attach
-        self.link.offer(hello.session, key)
         return self._may_adopt()
 
     def serve_console(self) -> None:

@@ -105,6 +105,12 @@ class PairedRig(Rig):
         return frames.encode(frames.close(body, seed))
 
     @property
+    def refused(self) -> int:
+        """How many frames the robot has counted as anything but good."""
+        link = self.core.link
+        return link.forged + link.foreign + link.duplicates + link.decoder.dropped
+
+    @property
     def forged(self) -> int:
         """How many frames the robot has counted as forged."""
         return self.core.link.forged

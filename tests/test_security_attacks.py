@@ -83,7 +83,7 @@ def test_a_session_that_is_replayed_with_its_hello_does_not_begin_again(armed):
 
     assert armed.served == []
     assert armed.core.session == SESSION + 1
-    assert armed.forged > 3 * len(recorded) // 2
+    assert armed.refused > 3 * len(recorded) // 2
 
 
 def test_a_session_that_is_replayed_after_a_restart_does_not_begin_again(armed):
@@ -280,6 +280,20 @@ def test_a_hello_that_names_another_session_to_take_over_makes_another_key(armed
 
     assert armed.core.session == SESSION
     assert armed.core.state == messages.ARMED
+
+
+def test_a_hello_of_a_session_that_is_over_changes_nothing_of_the_one_on_offer():
+    rig = PairedRig(begin=False)
+    rig.begin(SESSION + 5)
+    rig.begin(SESSION)
+    rig.arm()
+    mine, identity = rig.greet(SESSION + 1, attach=0)
+    key = secret.session_key(secret.prepared(KEY), mine, identity.nonce_a, identity.nonce_b, rig.crc)
+    rig.greet(SESSION + 5, attach=SESSION)
+
+    rig.attack(rig.sealed(messages.STATUS_REQUEST, 0, key, SESSION + 1))
+
+    assert rig.core.session == SESSION
 
 
 def test_a_second_host_with_the_key_takes_over_only_if_it_asks_to(armed):
