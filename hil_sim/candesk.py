@@ -11,8 +11,9 @@ Each part of a channel is an address as after `sim:`; a robot without a number g
 after a question mark belongs to the options, unless an @ or another question mark follows before the next comma.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
+from urllib.parse import quote
 
 from hil_sim.address import NODE_MAX, Address, AddressError, parse
 from hil_sim.canhost import CanHost
@@ -79,15 +80,15 @@ class CanDesk:
                 raise OSError(f"the firmware of robot {number} ended while it booted: {bench.crashes[0].error}")
 
 
-def addresses(channel: str) -> list[Address]:
-    """Return the robots of a channel, each with its number; AddressError when two have the same."""
+def addresses(channel: str, **options: object) -> list[Address]:
+    """Return the robots of a channel, each with its number and those options; AddressError when two have the same."""
     parts: list[str] = []
     for piece in filter(None, channel.split(",")):
         if parts and "?" in parts[-1] and not {"@", "?"} & set(piece):
             parts[-1] += "," + piece
         else:
             parts.append(piece)
-    wanted = [parse(part) for part in parts]
+    wanted = [parse(_with(part, options)) for part in parts]
     taken = [address.node for address in wanted if address.node]
     for address in wanted:
         if taken.count(address.node) > 1:
@@ -96,6 +97,11 @@ def addresses(channel: str) -> list[Address]:
             address.node = _free(taken)
             taken.append(address.node)
     return wanted
+
+
+def _with(part: str, options: Mapping[str, object]) -> str:
+    words = "&".join(f"{name}={quote(str(value), safe=':/,')}" for name, value in options.items())
+    return part + ("&" if "?" in part else "?") + words
 
 
 def _free(taken: list[int]) -> int:

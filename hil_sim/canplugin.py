@@ -29,7 +29,10 @@ PATIENCE_US = 1_000_000  # virtual time between two looks at the keyboard while 
 
 
 class SoftrigBus(BusABC):
-    """A host on the CAN bus of a desk of robots; other hosts join it with `desk`."""
+    """A host on the CAN bus of a desk of robots; other hosts join it with `desk`.
+
+    Options beyond those of the bus are those of an address, for every robot of the channel: slope=10, seed=2.
+    """
 
     repeatable = True  # what happens is a function of what was asked for, on any machine
 
@@ -43,20 +46,20 @@ class SoftrigBus(BusABC):
         receive_own_messages: bool = False,
         listen_only: bool = False,
         desk: CanDesk | None = None,
-        **kwargs: Any,
+        **options: Any,
     ) -> None:
         self._thread = threading.get_ident()
         self._own = receive_own_messages
         self._open = True
         try:
             with interrupts_deferred(None):
-                self.desk = desk or CanDesk(addresses(channel or ""))
+                self.desk = desk or CanDesk(addresses(channel or "", **options))
             self._host = self.desk.host(int(bitrate), listen_only, int(data_bitrate) if fd else 0)
         except (ValueError, LookupError, OSError, ArithmeticError) as error:
             raise CanInitializationError(str(error)) from error
         self.channel_info = f"softrig {self.desk.channel}"
         self._can_protocol = CanProtocol.CAN_FD if fd else CanProtocol.CAN_20
-        super().__init__(self.desk.channel, can_filters, **kwargs)
+        super().__init__(self.desk.channel, can_filters)
 
     @property
     def benches(self) -> dict[int, Bench]:

@@ -364,3 +364,11 @@ def test_the_robots_of_the_bench_are_offered_as_channels():
     found = can.detect_available_configs("softrig")
 
     assert {"interface": "softrig", "channel": "sphere-b"} in found
+
+
+def test_options_of_an_address_are_taken_for_every_robot_and_others_refused():
+    channel = "circular,circular@5?seed=4"
+    with can.Bus(interface="softrig", channel=channel, body="still", supply=1.5) as bus:
+        assert {number: bench.supply._source_v() for number, bench in bus.benches.items()} == {1: 1.5, 5: 1.5}
+    with pytest.raises(CanInitializationError, match=r"no option 'slop'.*slope"):
+        can.Bus(interface="softrig", channel="circular", slop=10)
