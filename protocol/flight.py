@@ -41,7 +41,8 @@ class Flight:
         self.resent = 0
         self.broken = False  # a frame was sent TRIES_MAX times in vain; it is still sent again
         self.rtt_ms = None
-        self._spread_ms = 0
+        self._mean_eighths = 0  # of the round trip, in 1/8 ms: in whole ms it would only ever fall
+        self._spread_quarters = 0
         self._rto_ms = RTO_FIRST_MS
         self._slots = WINDOW
         self._bytes = BYTES_ANY
@@ -138,11 +139,11 @@ class Flight:
 
     def _measure(self, rtt_ms: int) -> None:
         """Adapt the time-out to the round trip, less the time that the bytes took."""
-        if rtt_ms == self.rtt_ms and not self._spread_ms:
-            return
         if self.rtt_ms is None:
-            self.rtt_ms, self._spread_ms = rtt_ms, rtt_ms // 2
+            self._mean_eighths, self._spread_quarters = 8 * rtt_ms, 2 * rtt_ms
         else:
-            self._spread_ms += (abs(rtt_ms - self.rtt_ms) - self._spread_ms) // 4
-            self.rtt_ms += (rtt_ms - self.rtt_ms) // 8
-        self._rto_ms = min(self.rtt_ms + max(4 * self._spread_ms, TICK_MS), RTO_MAX_MS)
+            error = rtt_ms - (self._mean_eighths >> 3)
+            self._mean_eighths += error
+            self._spread_quarters += abs(error) - (self._spread_quarters >> 2)
+        self.rtt_ms = self._mean_eighths >> 3
+        self._rto_ms = min(self.rtt_ms + max(self._spread_quarters, TICK_MS), RTO_MAX_MS)
