@@ -132,6 +132,8 @@ def _session(table: Table) -> dict[str, object]:
         "part_help": messages.HELP,
         "units": ", ".join(f"`_{end}` {_unit(units[end])}" for end in sorted(units)),
         "key_bytes": secret.KEY_BYTES,
+        "key_damaged": messages.KEY_DAMAGED,
+        "code_key": f"F24, {codes.KEY}",
         "vector_key": "A worked key, proof and tag stand in `keys` of vectors.json.",
         "session": exchange.SESSION,
         "conversation": exchange.text(),
