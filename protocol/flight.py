@@ -106,6 +106,8 @@ class Flight:
         slots = self._slots
         if not slots and now_ms - self._news_ms >= PROBE_MS:
             slots = 1
+        if slots and len(self.waiting) == 1:
+            return self.waiting  # the oldest may always be sent
         allowed, flying = [], 0
         for place, waiting in enumerate(self.waiting):
             if place >= WINDOW:
@@ -142,7 +144,9 @@ class Flight:
         if self.rtt_ms is None:
             self._mean_eighths, self._spread_quarters = 8 * rtt_ms, 2 * rtt_ms
         else:
-            error = rtt_ms - (self._mean_eighths >> 3)
+            error = rtt_ms - self.rtt_ms
+            if error == 0 and self._spread_quarters < 4:
+                return
             self._mean_eighths += error
             self._spread_quarters += abs(error) - (self._spread_quarters >> 2)
         self.rtt_ms = self._mean_eighths >> 3

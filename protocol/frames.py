@@ -57,7 +57,8 @@ def seal(kind: int, seq: int, ack: int, payload: bytes, seed: int, flags: int, n
     """Return the body with its check; ValueError when the payload is longer than PAYLOAD_MAX."""
     if len(payload) > PAYLOAD_MAX:
         raise ValueError(f"payload {len(payload)} bytes, at most {PAYLOAD_MAX}")
-    return close(head(kind, seq, ack, flags, node) + payload, seed)
+    body = head(kind, seq, ack, flags, node) + payload
+    return body + crc32(body, 0 if kind < GREETINGS_BELOW else seed).to_bytes(CRC_BYTES, "little")
 
 
 def close(body: bytes, seed: int) -> bytes:

@@ -117,7 +117,7 @@ class Link:
         LinkFull when QUEUE_MAX frames wait; ValueError when the payload is longer than PAYLOAD_MAX.
         """
         _check(payload)
-        if self.room() <= 0:
+        if len(self.flight.waiting) >= QUEUE_MAX:
             raise LinkFull(f"{QUEUE_MAX} frames wait for an acknowledgement")
         number = self._next_send
         self._next_send = number + 1
@@ -143,20 +143,20 @@ class Link:
         delivered = []
         begun = False  # the session that was offered when these bytes came: they were decoded all at once
         for frame in self.decoder.feed(data):
-            kind = frame.kind
-            if not self._is_ours(frame):
+            flags, kind, seq, _, node, payload, _, offered = frame
+            if not self._is_ours(flags, node):
                 continue
             if kind < frames.GREETINGS_BELOW:
-                delivered.append(Received(kind, frame.seq, frame.payload))
+                delivered.append(Received(kind, seq, payload))
             elif frames.OPEN_FROM <= kind < frames.OPEN_BELOW:
                 self._take_open(frame, delivered)
-            elif frame.offered and not begun:
+            elif offered and not begun:
                 if self._begins(frame):
                     begun = True
                     # what the last session said a moment ago is nobody's order any more
                     delivered = [received for received in delivered if received.kind < frames.GREETINGS_BELOW]
                     self._take(frame, now_ms, delivered)
-            elif frame.offered == begun:
+            elif offered == begun:
                 self._take(frame, now_ms, delivered)
             else:
                 self.foreign += 1
@@ -167,7 +167,7 @@ class Link:
 
         No frame is begun that does not fit into `room` bytes; what is left comes with a later call.
         """
-        if self._opens():
+        if self._told_slots == 0 and self._opens():
             self._ack_due = True
         flight = self.flight
         if not (flight.waiting or self._posts or self._ack_due):
@@ -192,12 +192,12 @@ class Link:
             return now_ms
         return self.flight.due_ms(now_ms)
 
-    def _is_ours(self, frame) -> bool:
+    def _is_ours(self, flags: int, node: int) -> bool:
         """Return whether a frame is for, or from, the robot of this line; a robot answers as it is spoken to."""
-        named = frame.flags & frames.NODE != 0
         if not self._device:
-            return frame.node == self.node
-        if named and frame.node != self.node:
+            return node == self.node
+        named = flags & frames.NODE != 0
+        if named and node != self.node:
             return False
         self._addressed = named
         return True
@@ -207,8 +207,9 @@ class Link:
         if self.session == 0:
             self.foreign += 1
             return
-        reliable = frame.flags & frames.RELIABLE
-        in_turn = reliable and frame.seq == self._next_receive & 255
+        flags, kind, seq, ack, _, payload, _, _ = frame
+        reliable = flags & frames.RELIABLE
+        in_turn = reliable and seq == self._next_receive & 255
         number = self._next_receive if in_turn else self._number(frame)
         if self.key:
             number = self._true_number(frame, number)
@@ -220,15 +221,22 @@ class Link:
             self.duplicates += 1
             return
         self.heard_ms = now_ms
-        if frame.kind == ALIVE.number:
+        if kind == ALIVE.number:
             self._take_alive(frame, number, now_ms)
             return
-        self.flight.acknowledged(frame.ack, 0, now_ms)
-        if reliable:
-            self._take_reliable(frame, number, delivered)
-        else:
+        self.flight.acknowledged(ack, 0, now_ms)
+        if not reliable:
             self._next_posted = number + 1
-            delivered.append(Received(frame.kind, frame.seq, frame.payload))
+            delivered.append(Received(kind, seq, payload))
+            return
+        self._ack_due = True
+        self._retell -= self._retell > 0
+        if in_turn and not self._ahead:
+            self._next_receive = number + 1
+            delivered.append(Received(kind, seq, payload))
+        else:
+            self._ahead.append((number, frame))
+            self._deliver(delivered)
 
     def _begins(self, frame) -> bool:
         """Begin the session that was offered, if this frame is a true one of it and the time is right."""
@@ -253,14 +261,8 @@ class Link:
         self.flight.grant(alive.slots, alive.bytes)
         self.flight.acknowledged(frame.ack, alive.have, now_ms)
 
-    def _take_reliable(self, frame, number: int, delivered: list) -> None:
-        self._ack_due = True
-        self._retell -= self._retell > 0
-        if number == self._next_receive and not self._ahead:
-            self._next_receive = number + 1
-            delivered.append(Received(frame.kind, frame.seq, frame.payload))
-            return
-        self._ahead.append((number, frame))
+    def _deliver(self, delivered: list) -> None:
+        """Deliver what has come and is due now."""
         while True:
             due = [ahead for ahead in self._ahead if ahead[0] == self._next_receive]
             if not due:
