@@ -21,6 +21,7 @@ QUEUE_MAX = 64
 RESERVE = 8  # places of the queue that are kept for answers to what the other end was allowed to send
 ALIVE_BYTES = 5
 LAPS = 4  # of its 256 numbers that a posted frame may be ahead when all before it were lost
+_POSTED_LAPS = (0, -1) + tuple(range(1, LAPS))  # in the order of what is likely; -1: it was heard before
 LATE = 16  # a posted frame that seems so much older than the newest is: it was late on its way, or comes twice
 PAST_MAX = 8  # sessions whose end is remembered
 
@@ -296,8 +297,8 @@ class Link:
         return self._next_posted + ((frame.seq - self._next_posted + late) & 255) - late
 
     def _true_number(self, frame, number: int) -> int:
-        """Return the number that the frame's tag was made with, or -1: it is forged, or was heard before."""
-        for lap in range(1 if frame.flags & frames.RELIABLE else LAPS):
+        """Return the number that the frame's tag was made with, or -1: it is forged, or was heard long before."""
+        for lap in (0,) if frame.flags & frames.RELIABLE else _POSTED_LAPS:
             if self._is_true(frame, number + 256 * lap, self.key):
                 return number + 256 * lap
         return -1

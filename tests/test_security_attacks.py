@@ -125,12 +125,14 @@ def test_orders_that_were_put_in_another_order_are_obeyed_in_their_own(armed):
     assert armed.served[-3:] == ["fire"] * 3
 
 
-def test_an_alive_that_comes_after_a_newer_one_is_forged(armed):
+def test_an_alive_that_comes_after_a_newer_one_is_a_duplicate(armed):
     older, newer = of_kind(armed.said, messages.ALIVE)[-2:]
+    left_ms = armed.core.lease_left_ms()
 
     armed.attack(older)
 
-    assert armed.forged == 1
+    assert armed.core.link.duplicates == 1
+    assert armed.core.lease_left_ms() < left_ms
     assert newer != older
 
 
