@@ -1,0 +1,134 @@
+"""How long the answer to an order takes over a pty, against a bare echo of as many bytes, by turns in one run.
+
+Both peers are processes of their own. One reads and writes bytes, no more; in the other a link, the device's end, takes
+the order and answers it, and here the host's end sends and takes. The pieces that a busy machine held up are in p99.
+What the two ends cost without a line between them is told beside it.
+
+    python benchmarks/bench_reply.py
+"""
+
+import os
+import pty
+import time
+import tty
+from collections.abc import Callable
+
+from protocol.link import Link
+from protocol.messages import FIRE, OK
+
+DICTIONARY_CRC, SESSION = 0x12345678, 77
+EXCHANGES = 10_000
+WARM = 500
+AIM = 3.0
+ORDER_BYTES, ANSWER_BYTES = 18, 11
+
+
+def now_ms() -> int:
+    """Return the clock of both ends."""
+    return time.monotonic_ns() // 1_000_000
+
+
+def fresh_link(device: bool) -> Link:
+    """Return one end of a session."""
+    link = Link(DICTIONARY_CRC, device=device)
+    link.begin(DICTIONARY_CRC, SESSION)
+    return link
+
+
+def echo(port: int) -> None:
+    """Answer whatever comes with so many bytes."""
+    answer = bytes(ANSWER_BYTES)
+    while os.read(port, 4096):
+        os.write(port, answer)
+
+
+def robot(port: int) -> None:
+    """Answer every order with ok."""
+    link = fresh_link(device=True)
+    while data := os.read(port, 4096):
+        os.write(port, answered(link, data, now_ms()))
+
+
+def answered(link: Link, data: bytes, time_ms: int) -> bytes:
+    """Take an order at the device's end and return the bytes of its answer."""
+    for received in link.receive(data, time_ms):
+        FIRE.unpack(received.payload)
+        link.send(OK.number, OK.packed(received.seq), time_ms)
+    return link.poll(time_ms)
+
+
+def started(work: Callable[[int], None]) -> int:
+    """Start a process that works at one end of a pty and ends with this one; return the other end."""
+    ours, theirs = pty.openpty()
+    tty.setraw(theirs)
+    if os.fork() == 0:
+        os.close(ours)
+        try:
+            work(theirs)
+        finally:
+            os._exit(0)
+    os.close(theirs)
+    return ours
+
+
+def ask_echo(port: int) -> None:
+    """Send so many bytes and wait for those of the answer."""
+    os.write(port, bytes(ORDER_BYTES))
+    missing = ANSWER_BYTES
+    while missing > 0:
+        missing -= len(os.read(port, 4096))
+
+
+def ask_robot(link: Link, port: int) -> None:
+    """Send an order and wait for its ok."""
+    os.write(port, ordered(link, now_ms()))
+    while not link.receive(os.read(port, 4096), now_ms()):
+        pass
+
+
+def ordered(link: Link, time_ms: int) -> bytes:
+    """Return the bytes of an order."""
+    link.send(FIRE.number, FIRE.packed(1, 600, 500), time_ms)
+    return link.poll(time_ms)
+
+
+def by_turns(*works: Callable[[], None]) -> list[list[float]]:
+    """Return how long each call of each took, sorted [us]."""
+    took: list[list[float]] = [[] for _ in works]
+    for turn in range(WARM + EXCHANGES):
+        for work, times in zip(works, took, strict=True):
+            begun_ns = time.perf_counter_ns()
+            work()
+            if turn >= WARM:
+                times.append((time.perf_counter_ns() - begun_ns) / 1000)
+    return [sorted(times) for times in took]
+
+
+def both_ends() -> Callable[[], None]:
+    """Return an exchange of two links in this process."""
+    host, device = fresh_link(device=False), fresh_link(device=True)
+
+    def exchange() -> None:
+        for received in host.receive(answered(device, ordered(host, 5), 5), 5):
+            OK.unpack(received.payload)
+
+    return exchange
+
+
+def main() -> None:
+    """Print percentiles and ratios."""
+    raw_port, robot_port, link = started(echo), started(robot), fresh_link(device=False)
+    raw, ours, bare = by_turns(lambda: ask_echo(raw_port), lambda: ask_robot(link, robot_port), both_ends())
+    os.close(raw_port)
+    os.close(robot_port)
+
+    print(f"{'us':34}p10     p50     p99")
+    rows = {"bare bytes over a pty": raw, "an order and its ok over a pty": ours, "the same without a pty": bare}
+    for name, times in rows.items():
+        print(f"{name:31}" + "".join(f"{times[int(len(times) * share)]:8.1f}" for share in (0.1, 0.5, 0.99)))
+    ratios = [ours[int(len(ours) * share)] / raw[int(len(raw) * share)] for share in (0.1, 0.5, 0.99)]
+    print(f"{'order : bare, aim at most 3':31}" + "".join(f"{ratio:8.1f}" for ratio in ratios))
+
+
+if __name__ == "__main__":
+    main()
