@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 FLUSH_S = 0.5
 SEND_S = 2.0
+TICK_S = 1e-6  # of a clock of microseconds: a wait that is shorter might not end
 OFF_S = 1.0  # that an adapter may be bus-off; most come back by themselves
 BUS_OFF = 0x40  # class of an error frame, as Linux numbers them
 
@@ -95,7 +96,7 @@ class CanBus:
             return
         with suppress(SoftrigError):
             until_s = self.now_s() + FLUSH_S
-            while any(lane.waiting for lane in self._lanes.values()) and self.now_s() < until_s:
+            while any(lane.waiting for lane in self._lanes.values()) and self.now_s() + TICK_S <= until_s:
                 self.turn(until_s)
         self._lines.remove(line)
         if not self._lines:
@@ -106,14 +107,14 @@ class CanBus:
         """Let time pass, whatever has become of the bus."""
         if self.now_s is monotonic_s:
             pause_until(until_s)
-        while self.now_s() < until_s:
+        while self.now_s() + TICK_S <= until_s:
             self.turn(until_s)
 
     def _flush(self) -> float:
         """Send what is due; return when something is next."""
         now_s, next_s = self.now_s(), float("inf")
         for lane in self._lanes.values():
-            if lane.waiting and lane.due_s <= now_s:
+            if lane.waiting and lane.due_s < now_s + TICK_S:
                 self._put(lane.pop(now_s))
             if lane.waiting:
                 next_s = min(next_s, lane.due_s)

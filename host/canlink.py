@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from host.canbus import CanBus
+from host.canbus import TICK_S, CanBus
 from host.errors import BadRequest, NoRobot, Silent
 from protocol.canbus import ALL, CLASSIC, FD, STOP_DATA, STOP_IDENTIFIER, CanFrame, Segmenter
 from protocol.messages import STOPPED
@@ -62,13 +62,13 @@ class CanLink:
     def read(self, until_s: float) -> bytes:
         """Return what a robot has said, or b"" at `until_s`; LinkLost when the bus is gone."""
         while True:
-            if self._offers and self.now_s() >= self._settled_s:
+            if self._offers and self.now_s() + TICK_S > self._settled_s:
                 self._settle()
             if self._inbox:
                 data, self._inbox, self._waiting_bytes = b"".join(self._inbox), [], 0
                 return data
             now_s = self.now_s()
-            if now_s >= until_s:
+            if now_s + TICK_S > until_s:
                 self._check(now_s)
                 return b""
             self.bus.turn(min(until_s, self._settled_s) if self._offers else until_s)
