@@ -12,6 +12,8 @@ they destroy frames of CAN FD, which hosts with fd=True can exchange where there
 """
 
 import threading
+import weakref
+from math import ceil
 from typing import Any
 
 from can import BusABC, BusState, CanInitializationError, CanOperationError, CanProtocol, Message
@@ -20,6 +22,7 @@ from can.typechecking import AutoDetectedConfig, CanFilters
 
 from hil_sim.bench import Bench
 from hil_sim.candesk import CanDesk, addresses
+from hil_sim.canhost import CanHost
 from hil_sim.canmessages import frame_of, message_of
 from hil_sim.canperiodic import PeriodicTask
 from hil_sim.interrupts import interrupts_deferred
@@ -50,13 +53,13 @@ class SoftrigBus(BusABC):
     ) -> None:
         self._thread = threading.get_ident()
         self._own = receive_own_messages
-        self._open = True
         try:
             with interrupts_deferred(None):
                 self.desk = desk or CanDesk(addresses(channel or "", **options))
             self._host = self.desk.host(int(bitrate), listen_only, int(data_bitrate) if fd else 0)
         except (ValueError, LookupError, OSError, ArithmeticError) as error:
             raise CanInitializationError(str(error)) from error
+        self._end = weakref.finalize(self, _leave, self.desk, self._host)
         self.channel_info = f"softrig {self.desk.channel}"
         self._can_protocol = CanProtocol.CAN_FD if fd else CanProtocol.CAN_20
         super().__init__(self.desk.channel, can_filters)
@@ -74,7 +77,7 @@ class SoftrigBus(BusABC):
         """Return the next message, or None when `timeout` virtual seconds have passed; None waits for ever."""
         self._check()
         clock = self.desk.clock
-        until_us = None if timeout is None else clock.now_us + max(0, round(timeout * 1e6))
+        until_us = None if timeout is None else clock.now_us + _whole_us(timeout)
         while (message := self._next()) is None:
             if until_us is not None and clock.now_us >= until_us:
                 return None
@@ -89,7 +92,7 @@ class SoftrigBus(BusABC):
         """
         self._check()
         frame, clock = frame_of(msg), self.desk.clock
-        until_us = clock.now_us + max(0, round((timeout or 0) * 1e6))
+        until_us = clock.now_us + _whole_us(timeout or 0)
         while not self._host.room and clock.now_us < until_us:
             with interrupts_deferred(clock):
                 self.desk.run(until_us, self._host)
@@ -115,10 +118,7 @@ class SoftrigBus(BusABC):
     def shutdown(self) -> None:
         """Leave the bus; the last host takes the robots with it."""
         super().shutdown()
-        if self._open:
-            self._open = False
-            if not self.desk.leave(self._host):
-                self.desk.close()
+        self._end()
 
     def _next(self) -> Message | None:
         while (happened := self._host.take()) is not None:
@@ -128,7 +128,7 @@ class SoftrigBus(BusABC):
         return None
 
     def _check(self) -> None:
-        if not self._open:
+        if not self._end.alive:
             raise CanOperationError("the bus is shut down")
         if threading.get_ident() != self._thread:
             raise CanOperationError("a bus on virtual time belongs to the thread that opened it: no Notifier here")
@@ -139,3 +139,13 @@ class SoftrigBus(BusABC):
     @staticmethod
     def _detect_available_configs() -> list[AutoDetectedConfig]:
         return [{"interface": "softrig", "channel": name} for name in names()]
+
+
+def _leave(desk: CanDesk, host: CanHost) -> None:
+    if not desk.leave(host):
+        desk.close()
+
+
+def _whole_us(seconds: float) -> int:
+    """Return a time to wait in whole microseconds: none only for none, so that who waits in a loop gets there."""
+    return max(1, ceil(seconds * 1e6 - 1e-3)) if seconds > 0 else 0

@@ -1,5 +1,7 @@
 """The bench as a bus of python-can, opened as any other interface: arbitration, bit time, errors, filters, robots."""
 
+import subprocess
+import sys
 import threading
 
 import can
@@ -80,6 +82,23 @@ def test_waiting_takes_virtual_time_and_looking_takes_none(hosts):
     assert one.now_s() == began_s
     assert one.recv(3600.0) is None
     assert one.now_s() == pytest.approx(began_s + 3600.0)
+
+
+def test_the_shortest_wait_takes_some_time_so_that_who_waits_in_a_loop_gets_there(hosts):
+    (one,) = hosts(1)
+    until_s = one.now_s() + 1e-7
+
+    one.recv(until_s - one.now_s())
+
+    assert one.now_s() >= until_s
+
+
+def test_a_bus_that_nobody_shuts_down_ends_quietly_with_its_program():
+    program = "import can; bus = can.Bus(interface='softrig', channel='circular?body=still'); bus.recv(0.1)"
+
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+
+    assert "Traceback" not in done.stderr
 
 
 def test_the_lowest_identifier_goes_first_whoever_asked_first(hosts):
