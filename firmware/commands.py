@@ -212,7 +212,10 @@ class Commands:
         """Have the program verified; the answer follows when it is."""
         self._not_running()
         self._armed()
-        self._at = ON_SYNC if order.at_ms == messages.AT_SYNC else order.at_ms
+        on_sync = order.at_ms == messages.AT_SYNC
+        if on_sync and self._core.pairing.secured:
+            raise Refused(codes.OPEN_START)
+        self._at = ON_SYNC if on_sync else order.at_ms
         self.upload.verify(seq)
         return True
 

@@ -38,7 +38,7 @@ class Core:
         self.now_ms = 0
         self._after_reset = after_reset
         self._loud = loud  # a PWM chip that boot.py could not switch off
-        self.pairing = Pairing(board.open)
+        self.pairing = Pairing(board.open, board.serial)
         self.records = Records(self, messages.RESET if after_reset else messages.POWER_ON)
         self.control = Control(board, profile)
         self.channels, self.sense, self.guard = self.control.channels, self.control.sense, self.control.guard

@@ -1,10 +1,11 @@
 """The robot's pairing key, if it was given one: the file `/key`, 32 bytes and their CRC-32, which no order can read.
 
 A robot with a key takes orders only in sessions whose frames carry tags made with it; one whose key is damaged takes
-none at all, rather than being open to everybody. No two sessions have the same key: the robot's part of it is made of
-the number of this start, which is written down before it is first used, and of how many sessions it has begun.
+none at all, rather than being open to everybody. No two sessions have the same key, also not of two robots that share
+one: the robot's part is made of the board's serial number, of the number of this start, which is written down before it
+is first used, and of how many sessions it has begun.
 
-    pairing = Pairing(board.open)
+    pairing = Pairing(board.open, board.serial)
     pairing.begin()
     key = pairing.offer(hello, dictionary_crc)
 """
@@ -24,13 +25,14 @@ STARTS = 1 << 30  # a flash is worn out long before, and a board's small integer
 class Pairing:
     """The key of one robot; `secured` is what its `identity` says of it, see SECURED."""
 
-    def __init__(self, open_file) -> None:
+    def __init__(self, open_file, serial: bytes) -> None:
         raw = _raw(open_file)
         key = b"" if raw is None else _key(raw)
         self.secured = messages.UNPAIRED if raw is None else messages.PAIRED if key else messages.KEY_DAMAGED
         self.nonce = self.proof = (0, 0)  # of the session that was offered last
         self._pads = secret.prepared(key)
         self._store = Store(open_file, "starts", VERSION)
+        self._serial = serial
         self._start = 0
         self._begun = 0
 
@@ -44,7 +46,7 @@ class Pairing:
         """Return the key of the session that this hello asks for, b"" without a key; keep its nonce and proof."""
         if self.secured != messages.PAIRED:
             return b""
-        self.nonce = secret.nonce(self._pads, self._start, self._begun, hello)
+        self.nonce = secret.nonce(self._pads, self._serial, self._start, self._begun, hello)
         key = secret.session_key(self._pads, hello, self.nonce[0], self.nonce[1], dictionary_crc)
         self.proof = secret.proof(key)
         return key

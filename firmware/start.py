@@ -98,8 +98,8 @@ def keyed() -> bool:
     try:
         with open(KEY, "rb"):
             return True
-    except OSError:
-        return False
+    except OSError as error:
+        return error.args[0] != 2  # ENOENT; a key that cannot be read is one
 
 
 def start() -> None:

@@ -190,6 +190,12 @@ CODES = (
         "Use one of those there are, counted from 0.",
     ),
     Code(
+        codes.OPEN_START, "R30", "",
+        "A robot with a pairing key does not wait for `sync`, which anybody may say.",
+        NOTHING,
+        "Start the program at a time of the robot's clock instead.",
+    ),
+    Code(
         codes.STOP, "F01", "",
         "A stop was received.",
         ALL_OFF,

@@ -50,12 +50,13 @@ def proof(session: bytes) -> tuple:
     return struct.unpack("<II", hmac(session, b"softrig proof")[:8])
 
 
-def nonce(pads: bytes, start: int, begun: int, hello) -> tuple:
+def nonce(pads: bytes, serial: bytes, start: int, begun: int, hello) -> tuple:
     """Return two numbers that nobody without the key foretells, the same for the same hello said again.
 
-    They are others in another start of the robot, and after another session of that start has begun.
+    They are others on another board, in another start, and after another session of that start has begun.
     """
-    return struct.unpack("<II", hmac(pads, b"softrig nonce", struct.pack("<II", start, begun) + _said(hello))[:8])
+    told = struct.pack("<II", start, begun) + _said(hello) + serial
+    return struct.unpack("<II", hmac(pads, b"softrig nonce", told)[:8])
 
 
 def tag(session: bytes, device: bool, number: int, body: bytes) -> bytes:

@@ -179,6 +179,7 @@ class Table:
         self.waited_us = 0
         self.sensor = Imu()
         self.powered = False
+        self.serial = b"the table"
         self.credit_bytes = 448
         self.byte_ns = 86_805
         self.beats = 0

@@ -115,6 +115,7 @@ class Table:
     """A board on a table top."""
 
     powered = False
+    serial = b"the table"
     credit_bytes = 448
     byte_ns = 86_805
 

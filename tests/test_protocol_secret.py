@@ -85,14 +85,15 @@ def test_a_tag_is_the_same_only_if_all_of_it_is():
     )
 
 
-def test_a_nonce_is_another_in_each_start_after_each_session_and_for_each_hello():
+def test_a_nonce_is_another_on_each_board_in_each_start_after_each_session_and_for_each_hello():
     pads = secret.prepared(bytes(32))
     hellos = [Hello(session, attach, a, b) for session in (1, 2) for attach in (0, 1) for a in (0, 1) for b in (0, 1)]
 
-    made = {secret.nonce(pads, start, begun, hello) for start in (1, 2) for begun in (0, 1) for hello in hellos}
+    boards = [(serial, start, begun) for serial in (b"a", b"b") for start in (1, 2) for begun in (0, 1)]
+    made = {secret.nonce(pads, *board, hello) for board in boards for hello in hellos}
 
-    assert len(made) == 64
-    assert secret.nonce(pads, 1, 0, hellos[0]) == secret.nonce(pads, 1, 0, hellos[0])
+    assert len(made) == 128
+    assert secret.nonce(pads, *boards[0], hellos[0]) == secret.nonce(pads, *boards[0], hellos[0])
 
 
 def test_micropython_makes_the_same_of_them(tmp_path):

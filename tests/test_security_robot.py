@@ -45,7 +45,7 @@ def test_a_key_that_cannot_be_read_is_a_damaged_one():
     def open_file(path, mode):
         raise OSError(5, "EIO")
 
-    assert not Pairing(open_file).begin()
+    assert not Pairing(open_file, b"").begin()
 
 
 def test_a_robot_without_a_key_is_open_and_writes_nothing():
@@ -77,7 +77,7 @@ def test_a_power_cut_at_any_moment_of_a_start_makes_no_number_come_again():
     for cut_at in (*range(1, 13), 0) * 3:
         flash.cut_at = cut_at
         try:
-            pairing = Pairing(opener(flash))
+            pairing = Pairing(opener(flash), b"")
             assert pairing.begin()
         except PowerCut:
             continue
@@ -114,10 +114,31 @@ def test_a_lost_number_of_starts_begins_no_session(kept):
 
 def test_what_was_kept_as_a_number_but_is_none_begins_no_session():
     flash = Flash({"key": WHOLE})
-    pairing = Pairing(opener(flash))
+    pairing = Pairing(opener(flash), b"")
     pairing._store.write(b"not a number")
 
     assert not pairing.begin()
+
+
+def test_two_robots_with_one_key_never_make_the_same_session():
+    """Else what a host says to one of them could be sent to the other as well."""
+    one, other = PairedRig(begin=False), PairedRig(begin=False)
+    other.board.serial = b"another board"
+    other.restart()
+    one.restart()
+
+    first, second = one.greet()[1], other.greet()[1]
+
+    assert (first.nonce_a, first.proof_a) != (second.nonce_a, second.proof_a)
+
+
+def test_a_paired_robot_does_not_wait_for_a_sync_that_anybody_may_say():
+    rig = PairedRig()
+    rig.arm()
+
+    answers = rig.say(messages.START, at_ms=messages.AT_SYNC)
+
+    assert refusal(answers).code == codes.OPEN_START
 
 
 def test_service_is_refused_while_the_robot_is_armed():

@@ -39,6 +39,7 @@ class Board:
     credit_bytes = CREDIT_BYTES
 
     def __init__(self) -> None:
+        self.serial = unique_id()
         self._power = Pin(PWR_EN, Pin.OUT, value=0)
         self._heartbeat = Pin(HEARTBEAT, Pin.OUT, value=0)
         self._estop = Pin(ESTOP_SENSE, Pin.IN, Pin.PULL_DOWN)
