@@ -14,6 +14,7 @@ from protocol.canbus import GAP_MS, SLEEP_MS, WAKE_MS, CanFrame
 
 GAP_S, WAKE_S, SLEEP_S = GAP_MS / 1000, WAKE_MS / 1000, SLEEP_MS / 1000
 GAP_MAX_S = 0.016
+WIDER = 4  # times the distance, at each frame that has to be sent again
 EASED_AFTER = 50  # segments that were not missed, before their distance is halved again
 RECENT = 32  # frames among which one that is sent again is recognised
 WAITING_MAX = 2048
@@ -36,12 +37,13 @@ class Lane:
             self.waiting.append(frame)
 
     def notice(self, stuffed: bytes) -> None:
-        """Double the distance when a reliable frame is sent again: the robot has missed a segment, or is far behind."""
-        if len(stuffed) < 5 or stuffed[0] < 5 or not stuffed[1] & frames.RELIABLE:
+        """Keep more distance when a reliable frame is sent again: the robot has missed a segment, or is far behind."""
+        body = frames.decode(stuffed)
+        if not body or len(body) < frames.BODY_MIN or not body[0] & frames.RELIABLE:
             return
-        mark = (stuffed[2], stuffed[3])
+        mark = (body[1], body[2])
         if mark in self._recent:
-            self._gap_s, self._passed = min(2 * self._gap_s, GAP_MAX_S), 0
+            self._gap_s, self._passed = min(WIDER * self._gap_s, GAP_MAX_S), 0
         self._recent.append(mark)
 
     def pop(self, now_s: float) -> CanFrame:

@@ -8,10 +8,13 @@ witness.broken()        # sentences about the invariants that did not hold
 from zlib import crc32
 
 from hil_sim.bench import Bench
+from hil_sim.devices.canframe import Frame
+from hil_sim.devices.mcp2515filters import choose
 from hil_sim.journal import FAULT
 from host.definitions import dictionary_of
 from host.errors import SoftrigError
 from host.profile import Profile, read_profile
+from protocol.canbus import Assembler
 from tests.invariants import Excuse, Run, broken, excuse_of, spells_of
 from tests.orders import Ledger
 
@@ -28,6 +31,7 @@ class Witness:
         self._energy_j: list[tuple[int, list[float]]] = []
         self._excuses: list[tuple[int, Excuse]] = []
         self._at_line()
+        self._at_can()
         self._at_parts()
 
     def excuse(self, excuse: Excuse) -> None:
@@ -81,6 +85,21 @@ class Witness:
             return count
 
         uart.read, uart.write, uart.open = reads, writes, opens
+
+    def _at_can(self) -> None:
+        """Listen at the device's end of the CAN bus: what its controller lets pass, and what it sends."""
+        line, clock, chip = self._line, self.bench.clock, self.bench.board.can.can
+        passed, inward, outward = chip._passed, Assembler(False), Assembler(True)
+
+        def passes(frame: Frame, sent: bool) -> None:
+            passed(frame, sent)
+            if sent or choose(chip.registers, frame, (False, False)):
+                assembler = outward if sent else inward
+                body = assembler.feed(frame.id, frame.extended, frame.data, clock.now_us // 1000)
+                if body:
+                    line.append((clock.now_us, TOLD if sent else HEARD, body.line))
+
+        chip._passed = passes
 
     def _at_parts(self) -> None:
         """Listen at reset, gates and the journal's faults."""

@@ -1,0 +1,246 @@
+"""A robot on a CAN bus: the whole firmware, its controller, the wire, and the host's own line at the other end."""
+
+import pytest
+
+from hil_sim.devices.canframe import Frame
+from hil_sim.devices.canstation import CanStation
+from hil_sim.link import open_link as open_serial
+from host.canbus import CanBus
+from host.canlink import CanLink
+from host.errors import LinkLost, Silent
+from host.robot import Robot
+from protocol import frames, messages, program
+from protocol.canbus import ALL, GAP_MS, HOST, WAKE_MS, Assembler, Segmenter, identifier
+from protocol.link import Link
+
+STILL = "can:softrig:circular?body=still"
+STEP_US = 5_000
+
+
+@pytest.fixture
+def bus():
+    """A bus with one robot, number 1."""
+    bus = CanBus.open(f"{STILL}@1")
+    yield bus
+    for line in list(bus._lines):
+        line.close()
+
+
+@pytest.fixture
+def robot(bus):
+    """That robot, connected."""
+    robot = Robot(CanLink(bus, 1))
+    robot.connect()
+    return robot
+
+
+@pytest.fixture
+def bench(bus):
+    """That robot as the bench has it."""
+    return bus.observers[1]
+
+
+def beside(bench) -> CanStation:
+    """Return a stranger on the robot's bus."""
+    return CanStation(bench.board.can_wire, 500_000)
+
+
+def test_a_robot_is_armed_and_fired_and_tells_its_telemetry_over_can(robot, bench):
+    robot.arm()
+    robot.fire(["A"], 500, 300)
+    list(robot.listen(500))
+
+    on = [duty for _, duty in bench.coil("A").history if duty]
+    assert on[-1] == 0.5
+    assert bench.coil_gate("A") == 0.0
+    assert robot.statistics()["frames_resent"] == 0
+    assert bench.crashes == []
+
+
+def test_an_order_is_answered_within_two_control_steps(robot):
+    times = []
+    for _ in range(20):
+        began_s = robot.link.now_s()
+        robot.status()
+        times.append(robot.link.now_s() - began_s)
+
+    assert max(times) < 0.0125
+
+
+@pytest.mark.parametrize("at_us", range(0, STEP_US, 700))
+def test_a_stop_from_anybody_acts_within_one_control_step(robot, bench, at_us):
+    """Wherever the robot is in its step."""
+    stranger = beside(bench)
+    robot.arm()
+    robot.fire(["A"], 500, 2000)
+    bench.clock.run_until(bench.clock.now_us // STEP_US * STEP_US + 20 * STEP_US + at_us)
+    assert bench.coil_gate("A") > 0
+
+    stranger.send(Frame(0, b"STOP"))
+    bench.clock.run_until(bench.clock.now_us + STEP_US + 1_500)
+
+    assert bench.coil_gate("A") == 0.0
+    assert not bench.board.powered
+
+
+def test_a_stop_finds_room_while_others_flood_the_robot(robot, bench):
+    """Its receive buffer is its own: segments as quick as the wire carries them cannot take its place."""
+    stranger = beside(bench)
+    robot.arm()
+    robot.fire(["A"], 500, 2000)
+    for _ in range(400):
+        stranger.send(Frame(identifier(0x20, 1, 9, False), bytes(8), extended=True))
+    bench.clock.run_until(bench.clock.now_us + 40_000)
+    assert bench.coil_gate("A") > 0
+
+    stranger.waiting.insert(1, Frame(0, b"STOP"))
+    bench.clock.run_until(bench.clock.now_us + STEP_US + 1_500)
+
+    assert bench.coil_gate("A") == 0.0
+
+
+def test_a_stop_by_can_ends_what_the_serial_line_has_ordered():
+    link = open_serial("sim:circular?body=still")
+    robot = Robot(link)
+    robot.connect()
+    robot.arm()
+    robot.fire(["A"], 500, 2000)
+    stranger = beside(link.bench)
+
+    stranger.send(Frame(0, b"STOP"))
+    list(robot.listen(50))
+
+    assert link.bench.coil_gate("A") == 0.0
+    assert robot.status().state == "tripped"
+    answer = Assembler(True)
+    bodies = [answer.feed(frame.id, frame.extended, frame.data, 0) for frame in stranger.received]
+    assert [(body.robot, body.host) for body in bodies if body and body.kind == messages.STOPPED.number] == [(1, ALL)]
+    robot.link.close()
+
+
+def test_a_stop_by_the_serial_line_ends_what_can_has_ordered(robot, bench):
+    robot.arm()
+    robot.fire(["A"], 500, 2000)
+
+    bench.board.host_write(frames.STOP)
+    list(robot.listen(30))
+
+    assert bench.coil_gate("A") == 0.0
+    assert bench.board.uart.host_read(bench.clock.now_us)
+
+
+def test_another_host_on_the_serial_line_is_answered_and_may_only_watch(robot, bench):
+    robot.arm()
+    other = Link()
+    hello = messages.HELLO.pack(version=frames.VERSION, session=4242, attach=0, nonce_a=1, nonce_b=2)
+    other.post(messages.HELLO.number, hello)
+
+    bench.board.host_write(other.poll(0))
+    list(robot.listen(50))
+    received = other.receive(bench.board.uart.host_read(bench.clock.now_us), 0)
+
+    identity = messages.IDENTITY.unpack(received[-1].payload)
+    assert identity.role == messages.VIEWER
+    assert robot.status().state == "armed"
+
+
+def test_a_stranger_hears_beacons_of_state_and_coils(robot, bench):
+    stranger = beside(bench)
+    robot.arm()
+    robot.fire(["A", "D"], 300, 2000)
+    list(robot.listen(300))
+
+    told = [(frame.id >> 18 & 255, frame.data) for frame in stranger.received if frame.extended]
+    state = messages.BEACON.unpack([data for kind, data in told if kind == messages.BEACON.number][-1])
+    coils = [messages.BEACON_COILS.unpack(data) for kind, data in told if kind == messages.BEACON_COILS.number]
+    assert (state.state, state.code) == (messages.ARMED, 0)
+    assert 1980 <= state.supply_mv <= 2000
+    assert state.current_ma > 50
+    assert [each.group for each in coils[-4:]].count(1) == 1
+    assert {(each.group, each.duty_a_percent, each.duty_b_percent) for each in coils[-4:]} == {
+        (0, 30, 0), (1, 0, 30), (2, 0, 0), (3, 0, 0),
+    }  # fmt: skip
+    assert coils[-4:][0].temperature_a_decidegc > 200
+
+
+def test_a_robot_that_nobody_hears_tries_one_frame_a_second(bench):
+    link = open_serial("sim:circular?body=still")
+    began = []
+    chip = link.bench.board.can.can
+    chip.began, real = lambda: (began.append(link.bench.clock.now_us), real())[1], chip.began
+
+    link.bench.run(5)
+    link.close()
+
+    assert 4 <= len(began) <= 6
+    assert chip.errors.transmit < 60
+
+
+def test_a_robot_that_slept_hears_the_first_greeting(bench, bus):
+    bench.run(5)
+    link = CanLink(bus, 1)
+    began_s = link.now_s()
+
+    Robot(link).connect()
+
+    assert link.now_s() - began_s < 0.9
+    assert not any(lane._gap_s > GAP_MS / 1000 for lane in bus._lanes.values())
+
+
+def test_segments_that_come_too_close_are_sent_again_and_kept_apart(robot, bus, monkeypatch):
+    """A host that does not keep its distance loses frames, and its session repairs that."""
+    monkeypatch.setattr("host.canlane.GAP_S", 0.0)
+    lane = bus._lanes[1]
+    lane._gap_s = 0.0002
+
+    code = bytes(600)
+    robot.upload(program.header(code, robot.profile.crc), code)
+
+    assert robot.statistics()["frames_resent"] > 0
+    assert lane._gap_s > 0.0005
+
+
+def test_a_robot_survives_its_controller(robot, bench):
+    bench.board.can.alive = False
+    with pytest.raises(LinkLost):
+        robot.status()
+    assert bench.world.resets == 0
+
+    bench.board.can.alive = True
+    bench.run(3)
+    again = Robot(CanLink(robot.link.bus, 1))
+    again.connect()
+
+    assert again.status().state == "idle"
+
+
+def test_a_robot_comes_back_from_bus_off(robot, bench):
+    bench.board.can_wire.spoil(40)
+    list(robot.listen(500))
+
+    assert robot.status().state == "idle"
+    assert bench.world.resets == 0
+
+
+def test_two_hosts_at_one_robot_get_their_own_answers(robot, bench):
+    stranger, segmenter, assembler = beside(bench), Segmenter(1, 7, False), Assembler(True)
+    other = Link()
+    hello = messages.HELLO.pack(version=frames.VERSION, session=4242, attach=0, nonce_a=1, nonce_b=2)
+    other.post(messages.HELLO.number, hello)
+    robot.arm()
+
+    for number, frame in enumerate(segmenter.feed(other.poll(0))):
+        later_us = bench.clock.now_us + 1000 * (WAKE_MS + 2 * number)
+        bench.clock.at(later_us, lambda frame=frame: stranger.send(Frame(frame.identifier, frame.data, True)))
+    list(robot.listen(100))
+    bodies = [assembler.feed(frame.id, frame.extended, frame.data, 0) for frame in stranger.received]
+
+    to_us = [body.kind for body in bodies if body and body.host == 7]
+    assert to_us == [messages.IDENTITY.number]
+    assert HOST in {body.host for body in bodies if body}
+    assert robot.status().state == "armed"
+
+
+def test_nobody_at_that_number_is_told_with_those_who_are_there(bus):
+    with pytest.raises(Silent, match="robot 9 does not answer; on this bus: 1"):
+        Robot(CanLink(bus, 9)).connect()
