@@ -134,6 +134,7 @@ def _session(table: Table) -> dict[str, object]:
         "key_bytes": secret.KEY_BYTES,
         "key_damaged": messages.KEY_DAMAGED,
         "code_key": f"F24, {codes.KEY}",
+        "code_open_start": f"R30, {codes.OPEN_START}",
         "vector_key": "A worked key, proof and tag stand in `keys` of vectors.json.",
         "session": exchange.SESSION,
         "conversation": exchange.text(),

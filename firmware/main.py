@@ -27,7 +27,8 @@ def run(loud: int, is_new: bool, settled) -> None:
             core = Core(board, Profile(file.read()), pico.boot_number(), reset_cause() == WDT_RESET, loud)
         if board.warm():
             core.sense.assume_hot()  # the power was gone, and with it what was known of the coils
-        loop(board, core, Wires(board, core, board.can(core.records.settings.node) if core.records.settings.node else None), Trial(is_new, settled))
+        node = core.records.settings.node
+        loop(board, core, Wires(board, core, board.can(node) if node else None), Trial(is_new, settled))
         if core.leaves():
             raise KeyboardInterrupt  # which start.py takes for Ctrl-C on the console
     finally:
