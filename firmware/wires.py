@@ -52,9 +52,9 @@ class Wires:
         taken = self.port.take(now_ms)
         if not (data or taken or self._taken or self._serial):
             return data
-        urgent = self._finder.feed(data)
+        urgent = self._finder.feed(data)  # also where its halves come in two reads, and a body by CAN between them
         self._serial = (self._serial + data)[-SERIAL_MAX:]
-        stop = b""
+        stop = STOP if urgent else b""
         for body in taken:
             if body.host == ALL and body.line == STOP:
                 stop = STOP
