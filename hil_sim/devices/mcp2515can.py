@@ -242,9 +242,12 @@ class Mcp2515Can:
         return bool(self.registers[regs.TX[buffer]] & TXREQ)
 
     def _next(self) -> int | None:
-        rank = {buffer: self.registers[regs.TX[buffer]] & PRIORITY for buffer in BUFFERS}
-        waiting = [buffer for buffer in BUFFERS if self._pending(buffer)]
-        return max(waiting, key=lambda buffer: (rank[buffer], buffer), default=None)
+        best, rank = None, -1
+        for buffer in BUFFERS:
+            control = self.registers[regs.TX[buffer]]
+            if control & TXREQ and control & PRIORITY >= rank:
+                best, rank = buffer, control & PRIORITY
+        return best
 
     def _flag(self, buffer: int, flags: int) -> None:
         self.registers[regs.TX[buffer]] |= flags

@@ -90,22 +90,25 @@ def _hit(registers: bytearray, frame: Frame, buffer: int) -> int | None:
         return FILTERS_OF[buffer][0]
     if mode == (STANDARD_ONLY if frame.extended else EXTENDED_ONLY):
         return None
-    mask = registers[MASKS[buffer] : MASKS[buffer] + 4]
+    have, compared = _compared(frame, mode)
+    care = compared & int.from_bytes(registers[MASKS[buffer] : MASKS[buffer] + 4])
     for number in FILTERS_OF[buffer]:
-        wanted = registers[FILTERS[number] : FILTERS[number] + 4]
-        if bool(wanted[1] & EXIDE) == frame.extended and _meets(frame, wanted, mask, mode):
+        at = FILTERS[number]
+        wanted = int.from_bytes(registers[at : at + 4])
+        if bool(registers[at + 1] & EXIDE) == frame.extended and not (have ^ wanted) & care:
             return number
     return None
 
 
-def _meets(frame: Frame, wanted: bytearray, mask: bytearray, mode: int) -> bool:
-    """Compare under the mask; of a standard frame the extended part is held against its first two data bytes."""
-    high, low, third, fourth = identifier_bytes(frame)
+def _compared(frame: Frame, mode: int) -> tuple[int, int]:
+    """Return what is held against the four bytes of a filter, and which of its bits.
+
+    Of a standard frame the extended part is held against its first two data bytes.
+    """
+    have = int.from_bytes(bytes(identifier_bytes(frame)))
     if frame.extended:
-        compared = (high, low, third, fourth)
-    elif mode == STANDARD_ONLY:
-        compared = (high, low, wanted[2], wanted[3])
-    else:
-        compared = (high, low, *(frame.data + bytes(wanted[2:4])[len(frame.data) :])[:2])
-    bits = (mask[0], mask[1] & (0xE3 if frame.extended else 0xE0), mask[2], mask[3])
-    return all((have ^ want) & care == 0 for have, want, care in zip(compared, wanted, bits, strict=True))
+        return have, 0xFFE3_FFFF
+    if mode == STANDARD_ONLY:
+        return have, 0xFFE0_0000
+    data = frame.data[:2]
+    return have | int.from_bytes(data.ljust(2, b"\0")), 0xFFE0_0000 | 0xFFFF & ~(0xFFFF >> 8 * len(data))
