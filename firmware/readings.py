@@ -5,6 +5,10 @@ values = []
 readings.readers[variables.number("supply_mv")](values)
 """
 
+import struct
+
+USUAL_SCALARS = "<BHHHhhhB"
+
 
 class Readings:
     """The variables of one core; `readers`, in the order of the table, each add the value or values of theirs."""
@@ -20,6 +24,20 @@ class Readings:
         self._channels, self._sense, self._attitude = core.channels, core.sense, core.attitude
         self._resistance = core.control.resistance
         self._budget_mj = core.profile.coil.heat_budget_mj
+        self._degrees = f"<{core.channels.count}h"
+
+    def usual(self) -> bytes:
+        """Return the usual variables, packed: they are sent so often that all are read at once.
+
+        The duties go as they stand in memory: every board that this runs on is little endian, as the line is.
+        """
+        core, sense, attitude = self._core, self._sense, self._attitude
+        scalars = struct.pack(
+            USUAL_SCALARS, core.state, core.player.step, sense.supply_mv, sense.current_ma, sense.board_decidegc,
+            attitude.roll_decideg(), attitude.pitch_decideg(), attitude.down_channel(),
+        )  # fmt: skip
+        degrees = struct.pack(self._degrees, *[millidegc // 100 for millidegc in sense.temperature_millidegc])
+        return scalars + bytes(self._channels.duty_permille) + degrees
 
     def _state(self, values: list) -> None:
         values.append(self._core.state)

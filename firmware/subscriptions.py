@@ -28,11 +28,12 @@ USUAL_FORM = 0  # of records that every listener can read
 class Subscription:
     """One slot. Its `count` goes on from one subscription to the next, as long as the session lasts."""
 
-    def __init__(self) -> None:
+    def __init__(self, place: int) -> None:
+        self.place = place
         self.period_ms = 0  # 0: nothing is sent
         self.on_change = False
         self.form = USUAL_FORM
-        self.readers = ()
+        self.readers = ()  # none: the usual variables
         self.layout = "<"
         self.room = 0
         self.due_ms = 0
@@ -43,46 +44,45 @@ class Subscription:
 
 
 class Subscriptions:
-    """The slots of one core."""
+    """The slots of one core; `active` are those that have something to send."""
 
     def __init__(self, core) -> None:
-        self.active = False
-        self._readers = Readings(core).readers
+        self._readings = Readings(core)
         self._coils = core.channels.count
         self.forget()
 
     def forget(self) -> None:
         """End all: nobody is left who asked for it."""
-        self.active = False
-        self._slots = [Subscription() for _ in range(SLOTS)]
-        self._next = 0
+        self.active = ()
+        self._slots = [Subscription(place) for place in range(SLOTS)]
+        self._turn = 0
 
     def subscribe(self, slot: int, period_ms: int, on_change: bool, numbers: bytes, request: int, now_ms: int) -> None:
         """Send these variables from now on, or nothing when the period is 0; or raise Refused, and nothing changes."""
         if slot >= SLOTS:
             raise Refused(codes.SLOT_LIMIT, 255, slot, SLOTS - 1)
+        mine = self._slots[slot]
         if period_ms:
             self._check(period_ms, numbers)
-        mine = self._slots[slot]
-        mine.period_ms, mine.on_change = period_ms, on_change
-        mine.form = USUAL_FORM if tuple(numbers) == variables.USUAL else 1 + request % 255
-        mine.readers = [self._readers[number] for number in numbers] if period_ms else ()
-        mine.layout = variables.layout(numbers, self._coils) if period_ms else "<"
-        mine.room = struct.calcsize(mine.layout) + BESIDE
-        mine.due_ms = now_ms
-        mine.last, mine.blocked = b"", False
-        self.active = any(each.period_ms for each in self._slots)
+            usual = tuple(numbers) == variables.USUAL
+            mine.form = USUAL_FORM if usual else 1 + request % 255
+            mine.readers = () if usual else [self._readings.readers[number] for number in numbers]
+            mine.layout = variables.layout(numbers, self._coils)
+            mine.room = struct.calcsize(mine.layout) + BESIDE
+            mine.on_change, mine.due_ms = on_change, now_ms
+            mine.last, mine.blocked = b"", False
+        mine.period_ms = period_ms
+        self.active = [each for each in self._slots if each.period_ms]
 
     def record(self, now_ms: int, room: int) -> bytes:
         """Return the payload of a record that is due and for which there is room, or b""; the slots take turns."""
-        for _ in range(SLOTS):
-            place = self._next
-            self._next = (place + 1) & (SLOTS - 1)
-            mine = self._slots[place]
-            if mine.period_ms and now_ms - mine.due_ms >= 0:
+        for _ in self.active:
+            self._turn = (self._turn + 1) % len(self.active)
+            mine = self.active[self._turn]
+            if now_ms - mine.due_ms >= 0:
                 values = self._values(mine, now_ms, room)
                 if values:
-                    head = struct.pack(HEAD, place, mine.form, mine.count, now_ms & 0xFFFFFFFF)
+                    head = struct.pack(HEAD, mine.place, mine.form, mine.count, now_ms & 0xFFFFFFFF)
                     mine.count = (mine.count + 1) & 255
                     return head + variables.veiled(values)
         return b""
@@ -101,16 +101,19 @@ class Subscriptions:
         """Return the values to send now, or b""; count those that found no room since they were due."""
         if room < mine.room and not mine.on_change:
             return b""
-        flat = []
-        for reader in mine.readers:
-            reader(flat)
-        values = struct.pack(mine.layout, *flat)
+        values = self._read(mine) if mine.readers else self._readings.usual()
         if mine.on_change and not self._is_news(mine, values, now_ms, room):
             return b""
         skipped = (now_ms - mine.due_ms) // mine.period_ms
         mine.count = (mine.count + skipped) & 255
         mine.due_ms += (skipped + 1) * mine.period_ms
         return values
+
+    def _read(self, mine: Subscription) -> bytes:
+        flat = []
+        for reader in mine.readers:
+            reader(flat)
+        return struct.pack(mine.layout, *flat)
 
     def _is_news(self, mine: Subscription, values: bytes, now_ms: int, room: int) -> bool:
         """Return whether to send values on change now; the time of a change that finds no room becomes its due time."""

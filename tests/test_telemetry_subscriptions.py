@@ -1,5 +1,7 @@
 """Subscriptions on the robot: any variables, at any period or on change, counted when the line has no room."""
 
+import struct
+
 import pytest
 
 from firmware.readings import Readings
@@ -53,7 +55,7 @@ def test_every_variable_can_be_read_and_fits_its_type(rig):
     for number, reader in enumerate(readers):
         values = []
         reader(values)
-        packed = variables.struct.pack(variables.layout([number], 8), *values)
+        packed = struct.pack(variables.layout([number], 8), *values)
         assert variables.unpack([number], packed, 8) == [tuple(values) if len(values) > 1 else values[0]]
 
 
@@ -227,3 +229,17 @@ def test_the_attitude_is_among_the_variables():
         numbers("roll_decideg", "pitch_decideg", "down"), variables.veiled(record.values), 18
     )
     assert (abs(roll) <= 3, abs(pitch) <= 3, down != 255) == (True, True, True)
+
+
+def test_the_usual_variables_read_at_once_are_those_read_one_by_one():
+    rig = Rig(BALL)
+    rig.run(100)
+    rig.arm()
+    rig.fire(0b101, 600, 9000)
+    rig.run(300)
+    readings, values = Readings(rig.core), []
+
+    for number in variables.USUAL:
+        readings.readers[number](values)
+
+    assert readings.usual() == struct.pack(variables.layout(variables.USUAL, 18), *values)
