@@ -61,7 +61,11 @@ class Flight:
 
     def due(self, now_ms: int) -> list:
         """Return the frames to send now, oldest first."""
-        return [each for each in self._allowed(now_ms) if each.tries == 0 or now_ms - each.again_ms >= 0]
+        due = []
+        for waiting in self._allowed(now_ms):
+            if waiting.tries == 0 or now_ms - waiting.again_ms >= 0:
+                due.append(waiting)
+        return due
 
     def due_ms(self, now_ms: int) -> int | None:
         """Return when a frame is due at the latest; None: nothing waits."""
@@ -76,6 +80,7 @@ class Flight:
         if waiting.tries:
             wait_ms = min(wait_ms << min(waiting.tries, 5), RTO_MAX_MS)
             self.resent += 1
+            self.broken = self.broken or waiting.tries >= TRIES_MAX
         waiting.tries += 1
         waiting.sent_ms = now_ms
         if byte_ns:
@@ -84,7 +89,6 @@ class Flight:
         waiting.again_ms = now_ms + wait_ms
         self._order += 1
         waiting.order = self._order
-        self.broken = self.broken or waiting.tries > TRIES_MAX
 
     def acknowledged(self, ack: int, have: int, now_ms: int) -> None:
         """Take that all frames before the number that ends in `ack` have arrived, and after it those of the mask."""

@@ -181,7 +181,7 @@ class Link:
             if room < self._size(len(waiting.payload)):
                 break
             flight.sent(waiting, now_ms, self.byte_ns)
-            out.append(self._line(waiting.kind, waiting.number, waiting.payload, frames.RELIABLE))
+            out.append(self._spoken(waiting.kind, waiting.number, waiting.payload, frames.RELIABLE))
             room -= len(out[-1])
         if self._ack_due and room >= self._size(ALIVE_BYTES):
             out.append(self._alive())
@@ -312,12 +312,13 @@ class Link:
     def _posted(self) -> bytes:
         kind, payload = self._posts.pop(0)
         if kind < frames.GREETINGS_BELOW:
-            return self._line(kind, 0, payload, 0)
+            return frames.encode(frames.seal(kind, 0, 0, payload, 0, 0, self._named()))
         if frames.is_open(kind):
-            number, self._next_open = self._next_open, self._next_open + 1
-        else:
-            number, self._next_post = self._next_post, self._next_post + 1
-        return self._line(kind, number, payload, 0)
+            number, self._next_open = self._next_open & 255, self._next_open + 1
+            crc = self.decoder.dictionary_crc
+            return frames.encode(frames.seal(kind, number, 0, payload, crc, 0, self._named()))
+        number, self._next_post = self._next_post, self._next_post + 1
+        return self._spoken(kind, number, payload, 0)
 
     def _alive(self) -> bytes:
         """Return the frame that says what has arrived and how much more may come."""
@@ -330,7 +331,7 @@ class Link:
             self._retell = WINDOW
         number, self._next_post = self._next_post, self._next_post + 1
         payload = ALIVE.packed(have, self._told_slots, self.grant_bytes)
-        return self._line(ALIVE.number, number, payload, 0)
+        return self._spoken(ALIVE.number, number, payload, 0)
 
     def _slots(self) -> int:
         """Return for how many more frames there would be room to answer; a host answers none.
@@ -346,13 +347,13 @@ class Link:
         """Return whether the other end waits for credit that there is again."""
         return self._told_slots == 0 and self._slots() > 0
 
-    def _line(self, kind: int, number: int, payload: bytes, flags: int) -> bytes:
-        """Return a frame as it goes on the wire; one of the session carries the acknowledgement."""
+    def _named(self) -> int:
+        """Return the number of the robot that frames carry now, 0: none."""
+        return self.node if self._addressed else 0
+
+    def _spoken(self, kind: int, number: int, payload: bytes, flags: int) -> bytes:
+        """Return a frame of the session as it goes on the wire; it carries the acknowledgement."""
         node = self.node if self._addressed else 0
-        if kind < frames.GREETINGS_BELOW:
-            return frames.encode(frames.seal(kind, 0, 0, payload, 0, 0, node))
-        if frames.OPEN_FROM <= kind < frames.OPEN_BELOW:
-            return frames.encode(frames.seal(kind, number & 255, 0, payload, self.decoder.dictionary_crc, flags, node))
         if not self._ahead and not self._retell and self._told_slots == self._slots():
             self._ack_due = False  # this frame carries all there is to say
         ack = self._next_receive & 255
