@@ -6,10 +6,11 @@ from collections.abc import Callable
 
 from docs import board, dbc, exchange, vectors
 from docs.definitions import Place, Row, enums, rows, variables
-from firmware import greetings, subscriptions
+from firmware import greetings, selftest, subscriptions
 from firmware.subscriptions import STEP_MS
-from host import handshake, session, silence
+from host import handshake, session, silence, stopping
 from protocol import canbus, causes, codes, flight, frames, link, messages, program, secret
+from protocol.variables import USUAL, VARIABLES, veiled
 
 Table = Callable[[tuple[str, ...], list[tuple[str, ...]]], str]
 BAUD = board.constants()["BAUD"]
@@ -106,6 +107,8 @@ def _link() -> dict[str, object]:
         "tick_ms": flight.TICK_MS,
         "tries_max": flight.TRIES_MAX,
         "laps": link.LAPS,
+        "late": link.LATE,
+        "past_max": link.PAST_MAX,
     }
 
 
@@ -124,7 +127,11 @@ def _session(table: Table) -> dict[str, object]:
         "busy": f"R15, {codes.BUSY}",
         "keepalive_ms": session.KEEPALIVE_US // 1000,
         "ask_ms": handshake.ASK_MS,
-        "stop_again_ms": session.STOP_AGAIN_US // 1000,
+        "stop_again_ms": stopping.AGAIN_US // 1000,
+        "give_up_ms": handshake.GIVE_UP_MS,
+        "bad_payload": codes.BAD_PAYLOAD,
+        "test_turns": selftest.STRAY_AT + 1,
+        "open_start": f"R{codes.OPEN_START}",
         "probe_host_ms": silence.PROBE_MS,
         "silent_ms": silence.SILENT_MS,
         "page": greetings.PAGE,
@@ -176,6 +183,10 @@ def _telemetry(table: Table) -> dict[str, object]:
     return {
         "slots": subscriptions.SLOTS,
         "values_max": subscriptions.VALUES_MAX,
+        "still_ms": subscriptions.STILL_MS,
+        "veil": veiled(b"\0")[0],
+        "usual_form": subscriptions.USUAL_FORM,
+        "usual": ", ".join(f"`{VARIABLES[number].name}`" for number in USUAL),
         "variables": table(("number", "variable", "type", ""), found),
     }
 

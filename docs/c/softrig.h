@@ -166,6 +166,7 @@ enum {
     SOFTRIG_CODES_R27 = 27,
     SOFTRIG_CODES_R28 = 28,
     SOFTRIG_CODES_R29 = 29,
+    SOFTRIG_CODES_R30 = 30,
     SOFTRIG_CODES_F01 = 101,
     SOFTRIG_CODES_F02 = 102,
     SOFTRIG_CODES_F03 = 103,
@@ -1211,7 +1212,7 @@ static inline int softrig_unpack_refused(softrig_refused *out, softrig_bytes pay
 }
 
 /* 0x42 status: Answers status_request. */
-#define SOFTRIG_STATUS_BYTES 31u
+#define SOFTRIG_STATUS_BYTES 35u
 typedef struct softrig_status {
     uint8_t request; /* Sequence number of the request. */
     uint8_t state; /* State of the robot. SOFTRIG_STATES_... */
@@ -1227,6 +1228,8 @@ typedef struct softrig_status {
     int16_t pitch_decideg; /* Turn forward since upright, -180 to 180 deg; 0 when the attitude is not known. */
     uint8_t down; /* Channel of the coil whose direction is nearest to down; 255: the attitude is not known. */
     uint16_t dropped; /* Damaged frames since boot, modulo 65536. */
+    uint16_t forged; /* Frames without the tag that the pairing key makes, since boot, modulo 65536. */
+    uint16_t repeated; /* Frames of this session that were heard before, modulo 65536. */
     uint16_t overruns; /* Control steps that came late, modulo 65536. */
 } softrig_status;
 
@@ -1248,7 +1251,9 @@ static inline int softrig_pack_status(const softrig_status *in, uint8_t *out, si
     softrig_put16(out + 24, (uint16_t)in->pitch_decideg);
     out[26] = in->down;
     softrig_put16(out + 27, in->dropped);
-    softrig_put16(out + 29, in->overruns);
+    softrig_put16(out + 29, in->forged);
+    softrig_put16(out + 31, in->repeated);
+    softrig_put16(out + 33, in->overruns);
     return (int)SOFTRIG_STATUS_BYTES;
 }
 
@@ -1270,7 +1275,9 @@ static inline int softrig_unpack_status(softrig_status *out, softrig_bytes paylo
     out->pitch_decideg = softrig_signed16(softrig_get16(payload.at + 24));
     out->down = payload.at[26];
     out->dropped = softrig_get16(payload.at + 27);
-    out->overruns = softrig_get16(payload.at + 29);
+    out->forged = softrig_get16(payload.at + 29);
+    out->repeated = softrig_get16(payload.at + 31);
+    out->overruns = softrig_get16(payload.at + 33);
     return 0;
 }
 

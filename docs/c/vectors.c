@@ -1070,8 +1070,10 @@ static void payload_57(void)
     in.pitch_decideg = -32768;
     in.down = 0u;
     in.dropped = 0u;
+    in.forged = 0u;
+    in.repeated = 0u;
     in.overruns = 0u;
-    hex(&payload, "00000000000000000000000000000000000000000080008000800000000000");
+    hex(&payload, "0000000000000000000000000000000000000000008000800080000000000000000000");
     check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 57");
     check(softrig_unpack_status(&out, view(&payload)) == 0, "status 57");
     check(out.request == in.request, "status 57");
@@ -1088,6 +1090,8 @@ static void payload_57(void)
     check(out.pitch_decideg == in.pitch_decideg, "status 57");
     check(out.down == in.down, "status 57");
     check(out.dropped == in.dropped, "status 57");
+    check(out.forged == in.forged, "status 57");
+    check(out.repeated == in.repeated, "status 57");
     check(out.overruns == in.overruns, "status 57");
 }
 
@@ -1109,8 +1113,10 @@ static void payload_58(void)
     in.pitch_decideg = 32767;
     in.down = 255u;
     in.dropped = 65535u;
+    in.forged = 65535u;
+    in.repeated = 65535u;
     in.overruns = 65535u;
-    hex(&payload, "ffffffffffffffffffffffffffffffffffffffffff7fff7fff7fffffffffff");
+    hex(&payload, "ffffffffffffffffffffffffffffffffffffffffff7fff7fff7fffffffffffffffffff");
     check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 58");
     check(softrig_unpack_status(&out, view(&payload)) == 0, "status 58");
     check(out.request == in.request, "status 58");
@@ -1127,6 +1133,8 @@ static void payload_58(void)
     check(out.pitch_decideg == in.pitch_decideg, "status 58");
     check(out.down == in.down, "status 58");
     check(out.dropped == in.dropped, "status 58");
+    check(out.forged == in.forged, "status 58");
+    check(out.repeated == in.repeated, "status 58");
     check(out.overruns == in.overruns, "status 58");
 }
 
@@ -1148,8 +1156,10 @@ static void payload_59(void)
     in.pitch_decideg = 28690;
     in.down = 145u;
     in.dropped = 49224u;
-    in.overruns = 61458u;
-    hex(&payload, "239148c012f0debc24e0230148c07bf3918024e02381484012709148c012f0");
+    in.forged = 61458u;
+    in.repeated = 32913u;
+    in.overruns = 57380u;
+    hex(&payload, "239148c012f0debc24e0230148c07bf3918024e02381484012709148c012f0918024e0");
     check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 59");
     check(softrig_unpack_status(&out, view(&payload)) == 0, "status 59");
     check(out.request == in.request, "status 59");
@@ -1166,6 +1176,8 @@ static void payload_59(void)
     check(out.pitch_decideg == in.pitch_decideg, "status 59");
     check(out.down == in.down, "status 59");
     check(out.dropped == in.dropped, "status 59");
+    check(out.forged == in.forged, "status 59");
+    check(out.repeated == in.repeated, "status 59");
     check(out.overruns == in.overruns, "status 59");
 }
 
