@@ -40,3 +40,17 @@ def test_every_code_says_cause_deed_and_remedy_under_a_number_of_its_own():
     assert all(row.cause and row.did and row.todo for row in causes.CODES)
     assert causes.named("f05").number == codes.OVER_TEMPERATURE
     assert causes.row(codes.STOP).name == "F01"
+
+
+def test_values_may_be_given_in_the_order_of_the_fields():
+    assert messages.FIRE.packed(5, 600, 500) == messages.FIRE.pack(coils=5, duty_permille=600, hold_ms=500)
+    assert messages.DICTIONARY_PAGE.packed(0, 7, b"abc") == b"\x00\x07\x00abc"
+
+
+@pytest.mark.parametrize(
+    ("values", "complaint"),
+    [((1, 600), "fire takes coils"), ((1, 65536, 500), "duty_permille 65536"), ((1, 0.5, 500), "not a whole number")],
+)
+def test_values_in_order_are_refused_like_named_ones(values, complaint):
+    with pytest.raises(ValueError, match=complaint):
+        messages.FIRE.packed(*values)
