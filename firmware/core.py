@@ -196,7 +196,7 @@ class Core:
             self.trip(codes.CHIP, 255, self._loud)
         if self._after_reset:
             self.trip(codes.WATCHDOG)
-        if not self.pairing.begin():
+        if self.pairing.secured == messages.KEY_DAMAGED:
             self.trip(codes.KEY)
 
     def _receive(self, data: bytes) -> None:

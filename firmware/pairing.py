@@ -6,7 +6,6 @@ one: the robot's part is made of the board's serial number, of the number of thi
 is first used, and of how many sessions it has begun.
 
     pairing = Pairing(board.open, board.serial)
-    pairing.begin()
     key = pairing.offer(hello, dictionary_crc)
 """
 
@@ -23,7 +22,10 @@ STARTS = 1 << 30  # a flash is worn out long before, and a board's small integer
 
 
 class Pairing:
-    """The key of one robot; `secured` is what its `identity` says of it, see SECURED."""
+    """The key of one robot; `secured` is what its `identity` says of it, see SECURED.
+
+    Made once in a start, which it numbers then; without a number orders cannot be taken safely.
+    """
 
     def __init__(self, open_file, serial: bytes) -> None:
         raw = _raw(open_file)
@@ -35,12 +37,8 @@ class Pairing:
         self._serial = serial
         self._start = 0
         self._begun = 0
-
-    def begin(self) -> bool:
-        """Number this start, if there is a key; False when orders cannot be taken safely."""
         if self.secured == messages.PAIRED and not self._numbered():
             self.secured = messages.KEY_DAMAGED
-        return self.secured != messages.KEY_DAMAGED
 
     def offer(self, hello, dictionary_crc: int) -> bytes:
         """Return the key of the session that this hello asks for, b"" without a key; keep its nonce and proof."""

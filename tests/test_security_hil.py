@@ -44,6 +44,7 @@ def test_the_key_can_come_from_the_environment(softrig, paired, key, monkeypatch
     told = json.loads(asked.out)
     assert asked.status == 0
     assert (told["state"], told["forged"], told["repeated"], told["link"]["frames_forged"]) == ("idle", 0, 0, 0)
+    assert told["overruns"] == 0  # though the number of the start was written down
 
 
 def test_a_script_runs_on_a_paired_robot(softrig, paired, key, tmp_path):
@@ -122,6 +123,14 @@ def test_a_paired_robot_opens_its_console_when_it_is_ordered_to(paired, key):
         link.bench.run(1)
 
         assert said(link.bench) == ["softrig: service"]
+
+
+def test_a_paired_robot_on_a_can_bus_takes_orders_with_the_key_only(softrig, key):
+    robot = ("--robot", f"can:softrig:circular@1?body=still&key={key}")
+
+    with_key, without = softrig("arm", *robot, "--key", key), softrig("arm", *robot)
+
+    assert (with_key.status, without.status) == (0, 4)
 
 
 def test_a_second_host_with_the_key_waits_for_the_first_ones_lease(paired, key):

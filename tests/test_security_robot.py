@@ -2,7 +2,8 @@
 
 import pytest
 
-from firmware.pairing import Pairing
+from firmware.pairing import VERSION, Pairing
+from firmware.store import Store
 from hil_sim.devices.flash import Flash
 from host.keys import packed
 from host.pairing import Opening
@@ -45,7 +46,7 @@ def test_a_key_that_cannot_be_read_is_a_damaged_one():
     def open_file(path, mode):
         raise OSError(5, "EIO")
 
-    assert not Pairing(open_file, b"").begin()
+    assert Pairing(open_file, b"").secured == messages.KEY_DAMAGED
 
 
 def test_a_robot_without_a_key_is_open_and_writes_nothing():
@@ -78,10 +79,9 @@ def test_a_power_cut_at_any_moment_of_a_start_makes_no_number_come_again():
         flash.cut_at = cut_at
         try:
             pairing = Pairing(opener(flash), b"")
-            assert pairing.begin()
         except PowerCut:
             continue
-        pairing.offer(HELLO, 1)
+        assert pairing.offer(HELLO, 1)
         nonces.append(pairing.nonce)
 
     assert len(set(nonces)) == len(nonces) > 12
@@ -114,10 +114,9 @@ def test_a_lost_number_of_starts_begins_no_session(kept):
 
 def test_what_was_kept_as_a_number_but_is_none_begins_no_session():
     flash = Flash({"key": WHOLE})
-    pairing = Pairing(opener(flash), b"")
-    pairing._store.write(b"not a number")
+    Store(opener(flash), "starts", VERSION).write(b"not a number")
 
-    assert not pairing.begin()
+    assert Pairing(opener(flash), b"").secured == messages.KEY_DAMAGED
 
 
 def test_two_robots_with_one_key_never_make_the_same_session():
