@@ -8,15 +8,20 @@ that of the only robot that answers.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 from host.canbus import TICK_S, CanBus
 from host.errors import BadRequest, NoRobot, Silent
+from host.link import Link
+from host.records import Stopped, stopped_of
+from protocol import frames
 from protocol.canbus import ALL, CLASSIC, FD, STOP_DATA, STOP_IDENTIFIER, CanFrame, Segmenter
 from protocol.messages import STOPPED
 
 SETTLE_S = 0.05  # in which others may answer a greeting that went to all
 SILENT_S = 2.5  # after which a number that nobody has is told
+GATHER_S = 0.2  # in which every robot that heard a stop has said so
 INBOX_MAX = 1 << 18
 
 
@@ -75,15 +80,22 @@ class CanLink:
 
     def take(self, robot: int, kind: int, line: bytes) -> None:
         """Take a body that a robot has sent, if it is for this line."""
-        if kind == STOPPED.number and robot in (self.node, *([robot] if self.node == ALL else [])):
+        if kind == STOPPED.number:
             self.stopped[robot] = line
-            self._keep(line)
+            if self.node in (robot, ALL):
+                self._keep(line)
         elif robot == self.node:
             self._keep(line)
         elif self.node == ALL:
             if not self._offers:
                 self._settled_s = self.now_s() + SETTLE_S
             self._offers.setdefault(robot, []).append(line)
+
+    def gather(self, time_s: float) -> None:
+        """Hear for that long what robots say; nothing of it is read here."""
+        until_s = self.now_s() + time_s
+        while self.now_s() + TICK_S <= until_s:
+            self.bus.turn(until_s)
 
     def close(self) -> None:
         """Send what still waits, and let go of the bus."""
@@ -127,6 +139,19 @@ class CanLink:
             raise Silent(
                 f"{self._text}: nobody answers, and {self.bus.damaged} frames were damaged: is the bit rate right?"
             )
+
+
+def roll(link: Link) -> dict[int, Stopped]:
+    """Return what each robot on a bus has said of a stop, once all had the time to; of any other line nothing."""
+    if not isinstance(link, CanLink):
+        return {}
+    link.gather(GATHER_S)
+    told = {}
+    for node, line in sorted(link.stopped.items()):
+        for frame in frames.Decoder().feed(line):
+            with suppress(ValueError):
+                told[node] = stopped_of(frame.payload, (), round(link.now_s() * 1000))
+    return told
 
 
 def open_can(address: str) -> CanLink:

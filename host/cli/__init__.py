@@ -28,6 +28,7 @@ COMMANDS = {
     "disarm": "Switch all coils off and return the lease.",
     "fire": "Heat coils for a limited time.",
     "stop": "Switch everything off at once, from any state.",
+    "sync": "Start the robots that wait for one word, together.",
     "clear": "Leave the tripped state after a stop or a fault.",
     "faults": "List the faults that a robot has kept.",
     "settings": "List or change what a robot keeps of itself.",

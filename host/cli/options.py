@@ -12,7 +12,7 @@ from host.keys import read
 
 F = TypeVar("F", bound=Callable[..., Any])
 KEY = "softrig.key"
-ROBOT_HELP = "sim:NAME, the path of a port, or socket://HOST:PORT."
+ROBOT_HELP = "sim:NAME, the path of a port, socket://HOST:PORT, or can:INTERFACE:CHANNEL[@NODE]."
 
 
 def robot_option(required: bool = True, ordered: bool = True) -> Callable[[F], F]:

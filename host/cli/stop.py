@@ -6,9 +6,11 @@ from dataclasses import asdict
 
 import click
 
+from host.canlink import roll
 from host.cli.options import json_option, robot_option
 from host.cli.output import emit
 from host.link import open_link
+from host.records import Stopped
 from host.robot import Robot
 
 
@@ -16,8 +18,16 @@ from host.robot import Robot
 @robot_option(ordered=False)
 @json_option
 def command(robot: str, as_json: bool) -> None:
-    """Switch everything off at once, from any state; latched until `softrig clear`."""
+    """Switch everything off at once, from any state; latched until `softrig clear`. On CAN: every robot on the bus."""
     with Robot(open_link(robot)) as face:
         stopped = face.stop()
+        answered = roll(face.link)
+    for node, each in answered.items():
+        emit(as_json, {"node": node, **asdict(each)}, [f"robot {node} {_said(each)}"])
+    if not answered:
+        emit(as_json, asdict(stopped), [_said(stopped)])
+
+
+def _said(stopped: Stopped) -> str:
     coils = [f"coil {coil}" if coil.isalpha() else f"channel {coil}" for coil in stopped.coils]
-    emit(as_json, asdict(stopped), [f"stopped; {', '.join(coils) or 'no coil'} on before, none now"])
+    return f"stopped; {', '.join(coils) or 'no coil'} on before, none now"
