@@ -8,7 +8,7 @@ from pathlib import Path
 
 PICO = Path(__file__).parents[1] / "firmware" / "boards" / "pico.py"
 WIRES = (
-    ("TX", "TX", "Serial line to the host, 115200 to 921600 baud as the host has it, 3.3 V: an isolated USB adapter's RX."),
+    ("TX", "TX", "Serial line to the host, 115200 to 921600 baud, 3.3 V: an isolated USB adapter's RX."),
     ("RX", "RX", "Serial line from the host: the adapter's TX."),
     ("PWR_EN", "PWR_EN", "High closes the coil supply. Pulled down: open while the processor is reset."),
     ("HEARTBEAT", "HEARTBEAT", "Trigger of the monostable; it must move, or the outputs open within 50 ms."),
