@@ -64,6 +64,8 @@ class Reports:
                 return out
             link.post(messages.TELEMETRY.number, record)
             out += link.poll(now_ms, room - len(out))
+            if len(self.subscriptions.active) == 1:
+                return out  # the next one is due later
 
     def step_done(self) -> None:
         """Tell that the step told last has ended: all its ops have run, or the program has ended."""
