@@ -7,6 +7,7 @@ from collections.abc import Callable
 from docs import board, dbc, exchange, vectors
 from docs.definitions import Place, Row, enums, rows, variables
 from firmware import greetings, selftest, subscriptions
+from firmware.rates import RATES
 from firmware.subscriptions import STEP_MS
 from host import handshake, session, silence, stopping
 from protocol import canbus, causes, codes, flight, frames, link, messages, program, secret
@@ -69,6 +70,7 @@ def _frames(table: Table) -> dict[str, object]:
         "crc_check_seeded": crc32(b"123456789", 0x12345678),
         "worked": worked(table),
         "baud": BAUD,
+        "rates": ", ".join(map(str, sorted(RATES))),
         "step_ms": STEP_MS,
     }
 
