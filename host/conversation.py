@@ -15,10 +15,13 @@ from typing import Any, Protocol
 from host.answers import Answer
 from host.dictionaries import Dictionaries, Known, Unknown, cache_folder
 from host.errors import LinkLost, Refused
+from host.lasting import LastingLink, can_last
 from host.link import Link
+from host.outages import LinkNews, Outages
 from host.pairing import opened
 from host.records import Record, Stopped
 from host.session import Session
+from host.silence import PROBE_MS, SILENT_MS
 from protocol import messages
 
 
@@ -31,6 +34,9 @@ class Recorder(Protocol):
     def record(self, record: Record) -> None:
         """Keep what the robot told."""
 
+    def link(self, news: LinkNews) -> None:
+        """Keep what became of the line."""
+
 
 class Conversation:
     """One session after another over `link`, one at a time."""
@@ -41,6 +47,10 @@ class Conversation:
         self._recorder = recorder
         self._news: list[Record] = []
         self._key = key
+        self.outages = Outages()
+        self._patience_ms = 0
+        self._stops = False
+        self._told = False  # the recorder knows of this session
         self._known: Known = Unknown() if getattr(link, "repeatable", False) else Dictionaries(cache_folder())
         self.session = self._fresh(0)
 
@@ -54,7 +64,21 @@ class Conversation:
 
     def renew(self, attach: int = 0) -> None:
         """Begin a new session; `attach` is the one whose lease and program it takes over."""
+        self._told = False
         self.session = self._fresh(attach)
+
+    def endure(self, patience_ms: int, stops: bool = False) -> None:
+        """Go on in this session over a line that breaks for up to that long; with `stops`, only to stop the robot."""
+        if can_last(self.link):
+            self.link = LastingLink(self.link, patience_ms / 1000)
+        self.session.hearing.silence.patience_ms = self._patience_ms = patience_ms
+        self._stops = stops
+
+    def end(self) -> None:
+        """Say that the session ends, and let go of the line."""
+        if self._told:
+            self._tell("ends", "")
+        self.link.close()
 
     def order(self, message: messages.Message, **values: Any) -> Answer | None:
         """Give an order and wait for its answer; Refused when the robot refuses it."""
@@ -92,11 +116,16 @@ class Conversation:
         except OSError as error:
             raise LinkLost(f"the line broke ({error}); the robot switches its coils off by itself") from error
         now_us = self.now_us()
-        news = self.session.receive(data, now_us)
+        if data or self._break() is None:  # a broken line was not read: what it still holds may be old
+            for record in self.session.receive(data, now_us):
+                self._notice(record)
         if data:
             self._keep("in", data, now_us)
-        for record in news:
-            self._notice(record)
+        if self.session.open and not self._told:
+            self._told = True
+            self._tell("begins", "")
+        if self._patience_ms:
+            self._look_at_the_line(now_us // 1000)
 
     def taken(self) -> list[Record]:
         """Return the records that have come since this was asked last."""
@@ -109,6 +138,36 @@ class Conversation:
             self.stopped = record
         if self._recorder:
             self._recorder.record(record)
+
+    def _look_at_the_line(self, now_ms: int) -> None:
+        """Note an interruption and its end; LinkLost when it lasts for too long."""
+        hearing = self.session.hearing
+        heard_ms = hearing.told_ms if hearing.silence.expects else hearing.silence.heard_ms
+        news = self.outages.note(now_ms, self._interruption(), heard_ms, hearing.missed())
+        if news:
+            self._tell(news, self.outages.cause())
+        if news == "interrupted" and self._stops:
+            self.session.stop(self.now_us())
+        if self.outages.lasting_ms(now_ms) >= self._patience_ms + SILENT_MS:
+            raise LinkLost(f"{self.outages.cause()}; it switches its coils off by itself")
+
+    def _interruption(self) -> str | None:
+        """Return why the line is interrupted now, or None."""
+        cause = self._break()
+        if cause is None and self.session.hearing.overdue_ms() < PROBE_MS:
+            return None
+        return str(cause or "the robot has fallen silent")
+
+    def _break(self) -> LinkLost | None:
+        """Return why the line is broken now, or None."""
+        return self.link.cause if isinstance(self.link, LastingLink) else None
+
+    def _tell(self, what: str, cause: str) -> None:
+        if self._recorder:
+            now_us = self.now_us()
+            figures = self.session.hearing.clock_figures(now_us)
+            times = now_us // 1000, self.session.robot_ms(now_us)
+            self._recorder.link(LinkNews(*times, self.session.number, what, cause, *figures.values()))
 
     def _keep(self, direction: str, data: bytes, now_us: int) -> None:
         if self._recorder:

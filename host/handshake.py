@@ -4,7 +4,7 @@ Hello and dictionary travel in frames that need no dictionary, and are asked aga
 runs from the last progress, so that a slow line is not taken for a dead one.
 
     handshake = Handshake(opening, now_ms, known)
-    for kind, payload in handshake.poll(now_ms): ...
+    for kind, payload in handshake.poll(now_ms, noise): ...
     handshake.take(kind, payload, now_ms)
     handshake.profile    # once the robot is known
 """
@@ -16,7 +16,7 @@ from typing import Any
 
 from host.definitions import profile_of
 from host.dictionaries import Known
-from host.errors import Mismatch, Silent, SoftrigError
+from host.errors import Mismatch, NotOurs, Silent, SoftrigError
 from host.pages import Pages
 from host.pairing import Opening
 from host.profile import Profile
@@ -56,11 +56,13 @@ class Handshake:
         except ValueError:
             return
 
-    def poll(self, now_ms: int) -> list[Question]:
-        """Return the questions to ask now; raises what makes a session impossible."""
+    def poll(self, now_ms: int, noise: bool) -> list[Question]:
+        """Return the questions to ask now; raises what makes a session impossible. `noise`: something has come."""
         if self.trouble:
             raise self.trouble
         if now_ms - self._progress_ms >= GIVE_UP_MS:
+            if noise and self.identity is None:
+                raise NotOurs("something answers, but no robot of ours: check the port and its baud rate")
             raise Silent("nobody answers: is the robot switched on, and is this its port?")
         if self.identity is not None:
             return [page_question(messages.DEFINITIONS, *place) for place in self._pages.due(now_ms)]

@@ -35,7 +35,7 @@ class Hearing:
         self.holds_lease = False
         self.stopped = False  # the robot has answered a stop
         self.last: Telemetry | None = None
-        self.last_ms: int | None = None  # when it came
+        self.told_ms: int | None = None  # when telemetry came last
         self.trouble: SoftrigError | None = None
         self.greeted_ms: int | None = None  # the first hello to an open session that is not answered
         self.damaged = 0  # frames whose payload did not fit their message
@@ -49,6 +49,23 @@ class Hearing:
     def labels(self) -> tuple[str, ...]:
         """Return the labels of the robot's coils, none before it is known."""
         return self.profile.labels if self.profile else ()
+
+    def overdue_ms(self) -> int:
+        """Return for how long the robot has owed an answer or telemetry."""
+        return self.silence.silent_ms(self.answers.oldest())
+
+    def missed(self) -> int:
+        """Return how many records of telemetry did not come."""
+        return sum(self.selections.missed().values())
+
+    def clock_figures(self, now_us: int) -> dict[str, float | None]:
+        """Return how the robot's clock stands to ours; None where that is not known."""
+        figures = self.keeper.clock.figures(now_us / 1000)
+        return {
+            "clock_offset_ms": round(figures.offset_ms, 2) if figures else None,
+            "clock_drift_ppm": round(figures.drift_ppm, 1) if figures else None,
+            "clock_bound_ms": round(figures.bound_ms, 2) if figures else None,
+        }
 
     def take(self, kind: int, payload: bytes, now_us: int) -> Record | None:
         """Take one delivered frame; a payload that does not fit its message is dropped like a damaged frame."""
@@ -82,7 +99,8 @@ class Hearing:
         told = self.selections.take(payload, self.labels, now_ms)
         if told is None:
             return None
-        self.last_ms = now_ms
+        self.told_ms = now_ms
+        self.silence.heard(now_ms)
         self.last = told if isinstance(told, Telemetry) else self.last
         state = told.state if isinstance(told, Telemetry) else str(told.values.get("state", ""))
         self._compare(told.now_ms, self.silence.read_ms, LATE_MS, state, now_us, len(payload))

@@ -16,6 +16,7 @@ from host.errors import LinkLost, NoRobot
 from host.link import Link
 
 FIRST_S, LONGEST_S = 0.05, 1.0  # between two tries
+NEAR_S = 1e-6  # what a clock may be read short of a time that was waited for
 
 
 class LastingLink:
@@ -52,12 +53,14 @@ class LastingLink:
 
     def read(self, until_s: float) -> bytes:
         """Return bytes as soon as there are any, b"" at `until_s`; LinkLost when the line stays broken for too long."""
+        if self.cause is not None:
+            self._mend(self.cause, until_s)
+            until_s = self.now_s()
         if self.cause is None:
             try:
                 return bytes(self._link.read(until_s))
             except (LinkLost, OSError) as error:
                 self._break(error)
-        self._mend(self.cause, until_s)
         return b""
 
     def close(self) -> None:
@@ -74,14 +77,14 @@ class LastingLink:
         end_s = self._broke_s + self._patience_s
         self._link.pause(min(until_s, self._next_s, end_s))
         now_s = self.now_s()
-        if now_s >= self._next_s:
+        if now_s >= self._next_s - NEAR_S:
             self._between_s = min(2 * self._between_s, LONGEST_S)
             self._next_s = now_s + self._between_s
             with suppress(NoRobot, LinkLost, OSError):
                 self._link = self._link.reopen()
                 self.cause = None
                 self.reopened += 1
-        if self.cause is not None and now_s >= end_s:
+        if self.cause is not None and now_s >= end_s - NEAR_S:
             raise cause
 
 

@@ -14,12 +14,14 @@ import json
 from base64 import b64encode
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext, suppress
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from mcap.writer import Writer
 
 from host.errors import BadRequest
+from host.outages import LinkNews
 from host.recording import Scene
 from host.records import Event, Record, Sample, Telemetry, row_of
 
@@ -27,13 +29,13 @@ CHUNK_BYTES = 64 * 1024
 CHUNK_MS = 1000
 NS_PER_MS = 1_000_000
 
-NUMBER, TEXT = {"type": "number"}, {"type": "string"}
+NUMBER, TEXT, MAYBE = {"type": "number"}, {"type": "string"}, {"type": ["number", "null"]}
 BY_COIL = {"type": "object", "additionalProperties": NUMBER}
 COORDINATES = {"type": "array", "items": {"type": "array", "items": NUMBER}}
 TOPICS: dict[str, dict[str, Any]] = {
     "bytes": {
         "host_ms": NUMBER,
-        "now_ms": {"type": ["number", "null"]},
+        "now_ms": MAYBE,
         "direction": {"type": "string", "enum": ["in", "out"]},
         "data": {"type": "string", "contentEncoding": "base64"},
     },
@@ -42,8 +44,8 @@ TOPICS: dict[str, dict[str, Any]] = {
         "state": TEXT,
         "duty_permille": BY_COIL,
         "temperature_degc": BY_COIL,
-        "roll_deg": {"type": ["number", "null"]},
-        "pitch_deg": {"type": ["number", "null"]},
+        "roll_deg": MAYBE,
+        "pitch_deg": MAYBE,
         "down": {"type": ["string", "null"]},
     },
     "samples": {**dict.fromkeys(("host_ms", "now_ms", "slot"), NUMBER), "values": {"type": "object"}},
@@ -56,6 +58,16 @@ TOPICS: dict[str, dict[str, Any]] = {
         **dict.fromkeys(("host_ms", "now_ms", "code"), NUMBER),
         "state": TEXT,
         "coils": {"type": "array", "items": TEXT},
+    },
+    "line": {
+        "host_ms": NUMBER,
+        "now_ms": MAYBE,
+        "session": NUMBER,
+        "what": {"type": "string", "enum": ["begins", "interrupted", "resumed", "ends"]},
+        "cause": TEXT,
+        "clock_offset_ms": MAYBE,
+        "clock_drift_ppm": MAYBE,
+        "clock_bound_ms": MAYBE,
     },
     "scenes": {
         "host_ms": NUMBER,
@@ -113,6 +125,10 @@ class LogWriter:
         else:
             self._add("stops", record.host_ms, row)
             self._flush(record.host_ms)
+
+    def link(self, news: LinkNews) -> None:
+        """Keep what became of the line, and how the clocks stood."""
+        self._add("line", news.host_ms, asdict(news))
 
     def scene(self, scene: Scene) -> None:
         """Keep what an observer saw."""

@@ -19,6 +19,7 @@ from host.conversation import Conversation, Recorder
 from host.errors import Interrupted, LinkLost, Silent, SoftrigError
 from host.link import Link
 from host.orders import Orders
+from host.outages import Interruption
 from host.records import Event, Record, Stopped, Telemetry
 from protocol import causes, messages
 
@@ -48,7 +49,7 @@ class Robot(Orders):
             elif self._armed:
                 self._goodbye()
         finally:
-            self.link.close()
+            self.talk.end()
 
     @property
     def link(self) -> Link:
@@ -81,6 +82,10 @@ class Robot(Orders):
             talk.wait(lambda: False, self.now_ms() + AGAIN_MS)
             talk.renew()
             talk.wait(lambda: talk.session.open)
+
+    def endure(self, patience_ms: int, stops: bool = False) -> None:
+        """Go on over a line that breaks or falls silent for up to that long; with `stops`, only to stop the robot."""
+        self.talk.endure(patience_ms, stops)
 
     def info(self) -> dict[str, Any]:
         """Return who the robot is and what it allows."""
@@ -122,6 +127,8 @@ class Robot(Orders):
                     return
                 if isinstance(record, Stopped) or (isinstance(record, Telemetry) and record.state == "running"):
                     left_ms = self.now_ms() + LINGER_MS
+            if self.talk.outages.lasting_ms(self.now_ms()):
+                left_ms = self.now_ms() + LINGER_MS
             if self.now_ms() >= left_ms:
                 raise LinkLost("the program ended and the robot's word about it was lost; `softrig status` asks it")
             self.talk.turn(left_ms)
@@ -149,6 +156,10 @@ class Robot(Orders):
     def statistics(self) -> dict[str, Any]:
         """Return what the line did so far, and how the robot's clock stands to ours."""
         return self.talk.session.statistics(self.talk.now_us())
+
+    def interruptions(self) -> list[Interruption]:
+        """Return when the line was interrupted and came back."""
+        return self.talk.outages.over
 
     def missed(self) -> dict[int, int]:
         """Return how many records of telemetry did not come, by slot."""

@@ -12,12 +12,14 @@ from typing import Any, Protocol
 from host.attention import Attention
 from host.errors import LinkLost, RobotFault, ScriptFailed, SoftrigError
 from host.log import LogWriter
+from host.outages import LinkNews
 from host.recording import Recording, Scene
 from host.records import Event, Record, Telemetry
 from host.robot import Robot
 from protocol import causes, codes, program
 
 TELEMETRY_MS = 50
+PATIENCE_MS = 10_000  # with a line that breaks while the program runs
 COOL_MS = 2 * TELEMETRY_MS  # after the end, so that the record ends with every coil off
 
 
@@ -58,6 +60,11 @@ class Keeper:
         if isinstance(record, Telemetry) and self._observer is not None:
             self._keep(self._observer.snapshot(), record.host_ms)
 
+    def link(self, news: LinkNews) -> None:
+        """Keep what became of the line."""
+        if self._log:
+            self._log.link(news)
+
     def glance(self, host_ms: int) -> None:
         """Keep what the observer sees, once telemetry comes, if the body moves quickly."""
         if not self.recording.telemetry:
@@ -87,7 +94,7 @@ class Ending:
 
     def error(self) -> SoftrigError | None:
         """Return what the caller should raise, or None when the script ran to its end."""
-        if self.event is None or self.result == "done":
+        if self.lost or self.event is None or self.result == "done":
             return self.lost
         if self.result in ("guard", "timeout", "cancelled"):
             return ScriptFailed(f"the script ended early: {_cause(self.event)}")
@@ -96,8 +103,18 @@ class Ending:
         return RobotFault(self.event.code, self.event.value, self.event.coil)
 
 
-def run(robot: Robot, code: bytes, progress: Progress, without: tuple[str, ...] = ()) -> Ending:
-    """Run a program (header and code) on a robot that is connected; a line that breaks on the way ends it too.
+@dataclass(frozen=True, slots=True)
+class IfLost:
+    """What to do when the line breaks: go on when it is back, or only stop the robot; up to `patience_ms` later."""
+
+    stops: bool = False
+    patience_ms: int = PATIENCE_MS
+
+
+def run(
+    robot: Robot, code: bytes, progress: Progress, without: tuple[str, ...] = (), if_lost: IfLost | None = None
+) -> Ending:
+    """Run a program (header and code) on a robot that is connected, and watch it to its end.
 
     Coils of `without` are known to be broken: whatever the program orders, they stay cold.
     """
@@ -106,6 +123,12 @@ def run(robot: Robot, code: bytes, progress: Progress, without: tuple[str, ...] 
     robot.arm(without=without)
     progress("self-test", len(robot.profile.labels))
     robot.start()
+    return watch(robot, progress, if_lost or IfLost())
+
+
+def watch(robot: Robot, progress: Progress, if_lost: IfLost) -> Ending:
+    """Watch a running program to its end; a line that stays broken ends it too."""
+    robot.endure(if_lost.patience_ms, if_lost.stops)
     try:
         event = _watched(robot, progress)
         if event.event in ("finished", "aborted"):
@@ -113,6 +136,9 @@ def run(robot: Robot, code: bytes, progress: Progress, without: tuple[str, ...] 
     except LinkLost as lost:
         robot.leave()
         return Ending("link lost", None, lost)
+    if if_lost.stops and robot.interruptions() and event.code == codes.STOP:
+        cause = robot.interruptions()[-1].cause
+        return Ending("link lost", event, LinkLost(f"{cause}; once it was back, the robot was stopped, as asked"))
     return Ending(_result(event), event)
 
 

@@ -15,17 +15,17 @@ from typing import Any
 
 from host.answers import Asked
 from host.dictionaries import Known, Unknown
-from host.errors import BadRequest, LinkLost, NotOurs, NotPaired, Refused, Silent
+from host.errors import BadRequest, LinkLost, NotPaired, Refused
 from host.handshake import Handshake
 from host.hearing import Hearing
 from host.pairing import Opening, keyless, may_order, session_key
 from host.records import Record
 from host.selections import selection_of
-from protocol import codes, frames, messages
+from host.stopping import Stopping
+from protocol import codes, messages
 from protocol.link import Link
 
 KEEPALIVE_US = 100_000
-STOP_AGAIN_US = 100_000
 TICK_US = 50_000  # while the robot owes something
 IDLE_TICK_US = 250_000
 
@@ -40,7 +40,7 @@ class Session:
         self.hearing = Hearing(self._handshake, now_us)
         self._link = Link()
         self._begun = False
-        self._stop_due_us: int | None = None
+        self._stopping = Stopping()
         self._written_us = now_us
         self._bytes_in = self._bytes_out = self._damaged_before = 0
 
@@ -96,11 +96,12 @@ class Session:
 
     def stop(self, now_us: int) -> None:
         """Have the stop pattern sent until it is answered, or `end_stop`; works before and without a hello."""
-        self._stop_due_us, self.hearing.stopped = now_us, False
+        self._stopping.begin(now_us)
+        self.hearing.stopped = False
 
     def end_stop(self) -> None:
         """Send the stop pattern no more, though nobody has answered it."""
-        self._stop_due_us = None
+        self._stopping.end()
 
     def receive(self, data: bytes, now_us: int) -> list[Record]:
         """Take what a read of the line gave, even if that is nothing; return the records it completed."""
@@ -110,6 +111,7 @@ class Session:
             record = self.hearing.take(received.kind, received.payload, now_us)
             if record is not None:
                 records.append(record)
+        self.hearing.silence.heard(self._link.heard_ms)
         self.hearing.silence.read_ms = now_us // 1000
         if self.hearing.stopped:
             self.end_stop()
@@ -120,8 +122,8 @@ class Session:
     def poll(self, now_us: int) -> bytes:
         """Return the bytes to write now, or raise what ended the session."""
         out = b""
-        if self._stop_due_us is not None:
-            out = self._stop_bytes(now_us, self._stop_due_us)
+        if self._stopping.due_us is not None:
+            out = self._stopping.poll(now_us)
         elif not self.open:
             out = self._ask(now_us // 1000)
         else:
@@ -139,8 +141,8 @@ class Session:
         hearing = self.hearing
         owed = hearing.silence.expects or hearing.answers.oldest() is not None
         due = [now_us + (TICK_US if owed else IDLE_TICK_US)]
-        if self._stop_due_us is not None:
-            due.append(self._stop_due_us)
+        if self._stopping.due_us is not None:
+            due.append(self._stopping.due_us)
         elif not self.open:
             due.append(1000 * self._handshake.due_ms())
         resend_ms = self._link.due_ms(now_us // 1000) if self.open else None
@@ -158,19 +160,17 @@ class Session:
 
     def statistics(self, now_us: int) -> dict[str, Any]:
         """Return what the line did, and how the robot's clock stands to ours."""
-        link, figures = self._link, self.hearing.keeper.clock.figures(now_us / 1000)
+        link = self._link
         return {
             "bytes_sent": self._bytes_out,
             "bytes_received": self._bytes_in,
             "frames_resent": link.resent,
             "frames_repeated": link.duplicates,
-            "telemetry_missed": sum(self.hearing.selections.missed().values()),
+            "telemetry_missed": self.hearing.missed(),
             "frames_forged": link.forged,
             "frames_damaged": link.decoder.dropped + self.hearing.damaged - self._damaged_before,
             "round_trip_ms": link.rtt_ms,
-            "clock_offset_ms": round(figures.offset_ms, 2) if figures else None,
-            "clock_drift_ppm": round(figures.drift_ppm, 1) if figures else None,
-            "clock_bound_ms": round(figures.bound_ms, 2) if figures else None,
+            **self.hearing.clock_figures(now_us),
         }
 
     @property
@@ -181,7 +181,7 @@ class Session:
 
     def _talk(self, now_us: int) -> None:
         """Have the link say what is due unasked: a question for the clock, or only that the host lives."""
-        asks = self._listens and self.hearing.silence.on_time(self._heard_ms())
+        asks = self._listens and self.hearing.silence.on_time()
         question = self.hearing.keeper.question(now_us) if asks else None
         if question is not None:
             self._link.post(messages.CLOCK_REQUEST.number, question)
@@ -206,13 +206,8 @@ class Session:
     def _ask(self, now_ms: int) -> bytes:
         if self.hearing.trouble:  # of what a robot said that answered a stop
             raise self.hearing.trouble
-        try:
-            for kind, payload in self._handshake.poll(now_ms):
-                self._link.post(kind, payload)
-        except Silent:
-            if self._bytes_in and self.identity is None:
-                raise NotOurs("something answers, but no robot of ours: check the port and its baud rate") from None
-            raise
+        for kind, payload in self._handshake.poll(now_ms, self._bytes_in > 0):
+            self._link.post(kind, payload)
         return bytes(self._link.poll(now_ms))
 
     def _check(self, now_ms: int) -> None:
@@ -220,22 +215,11 @@ class Session:
         hearing, silence = self.hearing, self.hearing.silence
         if hearing.trouble:
             raise hearing.trouble
-        heard_ms, oldest = self._heard_ms(), hearing.answers.oldest()
-        how = silence.given_up(heard_ms, oldest)
+        oldest = hearing.answers.oldest()
+        how = silence.given_up(oldest)
         if how:
             figures = ", ".join(f"{name} {value}" for name, value in self.statistics(1000 * now_ms).items())
             raise LinkLost(f"the robot {how} ({figures}); it switches its coils off by itself")
-        if silence.probes(now_ms, heard_ms, oldest):
+        if silence.probes(now_ms, oldest):
             hearing.greeted_ms = now_ms if hearing.greeted_ms is None else hearing.greeted_ms
             self._link.post(messages.HELLO.number, self._opening.payload())
-
-    def _heard_ms(self) -> int | None:
-        """Return when the last intact frame of the robot came, or None."""
-        heard = [time_ms for time_ms in (self._link.heard_ms, self.hearing.last_ms) if time_ms is not None]
-        return max(heard, default=None)
-
-    def _stop_bytes(self, now_us: int, due_us: int) -> bytes:
-        if now_us < due_us:
-            return b""
-        self._stop_due_us = now_us + STOP_AGAIN_US
-        return frames.STOP * 3

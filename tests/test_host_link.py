@@ -270,7 +270,7 @@ def test_a_socket_without_host_and_port_is_a_mistake_of_the_caller(address):
 
 
 def test_an_unknown_scheme_lists_the_known_ones():
-    with pytest.raises(BadRequest, match="no line warp: known are serial:, sim:, socket:"):
+    with pytest.raises(BadRequest, match="no line warp: known are can:, serial:, sim:, socket:"):
         open_link("warp:9")
 
 

@@ -260,12 +260,16 @@ def test_every_byte_is_kept_with_both_clocks(line):
     class Kept:
         lines: list = []  # noqa: RUF012
         records: list = []  # noqa: RUF012
+        news: list = []  # noqa: RUF012
 
         def line(self, *row):
             self.lines.append(row)
 
         def record(self, record):
             self.records.append(record)
+
+        def link(self, news):
+            self.news.append(news)
 
     kept = Kept()
     robot = Robot(line, kept)
