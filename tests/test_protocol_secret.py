@@ -2,6 +2,7 @@
 
 import hmac
 import random
+import struct
 import subprocess
 from collections import namedtuple
 from hashlib import sha256
@@ -76,6 +77,19 @@ def test_every_word_of_both_greetings_makes_another_session_key():
     keys = {secret.session_key(pads, Hello(*row[:4]), *row[4:]) for row in said}
 
     assert len(keys) == 8
+
+
+def test_a_stranger_makes_the_same_of_what_the_document_says():
+    """With the standard library alone: hello 2, 7, 0, 8, 9; the robot's numbers 4, 5; its dictionary 0xDEADBEEF."""
+    key, hello = bytes(range(32)), Hello(7, 0, 8, 9)
+    said = struct.pack("<BIIII", 2, 7, 0, 8, 9) + struct.pack("<III", 4, 5, 0xDEADBEEF)
+    session = hmac.digest(key, b"softrig session" + said, sha256)
+
+    made = secret.session_key(secret.prepared(key), hello, 4, 5, 0xDEADBEEF)
+
+    assert made == secret.prepared(session)
+    assert secret.proof(made) == struct.unpack("<II", hmac.digest(session, b"softrig proof", sha256)[:8])
+    assert secret.tag(made, False, 258, b"body") == hmac.digest(session, b"\0\x02\x01\0\0body", sha256)[:8]
 
 
 def test_a_tag_is_the_same_only_if_all_of_it_is():

@@ -148,16 +148,16 @@ def test_a_second_host_with_the_key_waits_for_the_first_ones_lease(paired, key):
     link.close()
 
 
-def test_the_same_run_on_a_paired_robot_is_the_same_to_the_byte(paired, key):
-    def trace():
-        link = open_link(paired)
+def test_a_run_on_a_paired_robot_is_the_same_to_the_byte_again_and_in_both_worlds(paired, key):
+    def trace(world):
+        link = open_link(f"{paired}&world={world}")
         with Robot(link, key=keys.read(key)) as robot:
             robot.connect()
             robot.arm()
             robot.disarm()
             return link.bench.trace_sha256()
 
-    assert trace() == trace()
+    assert trace("cpython") == trace("cpython") == trace("micropython")
 
 
 def test_a_host_without_the_key_may_watch_but_not_order(paired):
