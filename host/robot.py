@@ -98,6 +98,7 @@ class Robot(Orders):
             "boot": identity.boot,
             "session": self.talk.session.number,
             "state": messages.STATES[identity.state],
+            "paired": identity.secured != messages.UNPAIRED,
             "may_arm": not self.talk.session.viewer,
             "coils": list(profile.labels),
         }

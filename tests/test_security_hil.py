@@ -66,10 +66,11 @@ def test_an_order_without_the_key_is_refused_and_told(softrig, paired, command):
 
 
 def test_who_the_robot_is_everybody_may_ask(softrig, paired):
-    asked = softrig("info", "--robot", paired, "--json")
+    asked, told = (softrig("info", "--robot", paired, *form) for form in (["--json"], []))
 
-    assert asked.status == 0
-    assert json.loads(asked.out)["robot"] == "circular"
+    assert (asked.status, told.status) == (0, 0)
+    assert json.loads(asked.out)["paired"]
+    assert "takes orders only with its pairing key" in told.out
 
 
 def test_a_wrong_key_is_told_as_such(softrig, paired, tmp_path):

@@ -47,6 +47,8 @@ def _lines(fields: dict[str, Any]) -> Iterator[str]:
     limits = fields["limits"]
     yield f"{fields['robot']} at {fields['address']}: {fields['firmware']}, protocol {fields['protocol']}"
     yield f"  state       {fields['state']}{'' if fields['may_arm'] else ', another host holds the lease'}"
+    if fields["paired"]:
+        yield "  paired      takes orders only with its pairing key"
     yield f"  dictionary  {fields['dictionary']}, start number {fields['boot']}"
     yield f"  coils       {' '.join(fields['coils'])}"
     for name, labels in fields["groups"].items():
