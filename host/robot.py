@@ -99,7 +99,7 @@ class Robot(Orders):
             "session": self.talk.session.number,
             "state": messages.STATES[identity.state],
             "paired": identity.secured != messages.UNPAIRED,
-            "may_arm": not self.talk.session.viewer,
+            "may_arm": not self.talk.session.mute,
             "coils": list(profile.labels),
         }
 

@@ -69,7 +69,7 @@ def test_who_the_robot_is_everybody_may_ask(softrig, paired):
     asked, told = (softrig("info", "--robot", paired, *form) for form in (["--json"], []))
 
     assert (asked.status, told.status) == (0, 0)
-    assert json.loads(asked.out)["paired"]
+    assert (json.loads(asked.out)["paired"], json.loads(asked.out)["may_arm"]) == (True, False)
     assert "takes orders only with its pairing key" in told.out
 
 

@@ -46,7 +46,7 @@ def command(robot: str, as_json: bool) -> None:
 def _lines(fields: dict[str, Any]) -> Iterator[str]:
     limits = fields["limits"]
     yield f"{fields['robot']} at {fields['address']}: {fields['firmware']}, protocol {fields['protocol']}"
-    yield f"  state       {fields['state']}{'' if fields['may_arm'] else ', another host holds the lease'}"
+    yield f"  state       {fields['state']}{'' if fields['may_arm'] else ', this host may only watch and stop'}"
     if fields["paired"]:
         yield "  paired      takes orders only with its pairing key"
     yield f"  dictionary  {fields['dictionary']}, start number {fields['boot']}"
