@@ -12,8 +12,8 @@ from functools import partial
 
 from benchmarks.wire_codecs import CODECS, values
 
-TURNS = 9
-FRAMES = 1500
+TURNS = 60
+FRAMES = 250
 AIM = 4.0
 
 

@@ -16,7 +16,8 @@ from host.dictionaries import Unknown
 from host.pairing import Opening
 from host.session import Session
 from protocol import canbus, secret
-from protocol.frames import STUFFING
+from protocol.flight import WINDOW
+from protocol.frames import BODY_MIN, STUFFING
 from protocol.link import Link
 from protocol.messages import CODE, FIRE, OK
 from tests.fake_robot import FakeRobot
@@ -26,7 +27,7 @@ BAUD = 115200
 BYTE_NS = 10 * 1_000_000_000 // BAUD
 TICK_US = 100
 STEP_MS = 5  # of the robot's control loop, in which it reads its line
-CREDIT_BYTES = 448  # that a board takes
+CREDIT_BYTES, MORE_BYTES = 448, 960  # of credit: what a board gives, and what it could with a buffer twice as long
 PIECE = 192  # bytes of a program in a message
 SECONDS = 10
 KLIPPER_TRIPS, GRBL_LINES = 102, "23 to 103"  # measured on the same machine with their own firmware, in C
@@ -103,12 +104,12 @@ def klipper_bytes() -> tuple[int, int]:
     return len(KlipperStyle().block((20, 0b101, 600, 500))), len(KlipperStyle().block(()))
 
 
-def delivered(kind: int, payload: bytes, delay_ms: float, loss: float) -> tuple[float, float]:
+def delivered(kind: int, payload: bytes, delay_ms: float, loss: float, credit: int) -> tuple[float, float]:
     """Return how many such orders a second are carried out and answered, and which share of the line they fill."""
     (host, device), line = ends(), SlowLine(BAUD, delay_ms, loss)
     host.byte_ns = device.byte_ns = BYTE_NS
-    device.grant_bytes = CREDIT_BYTES
-    host.granted(16, CREDIT_BYTES)
+    device.grant_bytes = credit
+    host.granted(WINDOW, credit)
     done = 0
     for now_us in range(0, SECONDS * 1_000_000, TICK_US):
         now_ms = now_us // 1000
@@ -121,7 +122,7 @@ def delivered(kind: int, payload: bytes, delay_ms: float, loss: float) -> tuple[
                 device.send(OK.number, OK.packed(received.seq), now_ms)
             line.back.carry(device.poll(now_ms), now_us)
         done += len(host.receive(line.back.landed(now_us), now_ms))
-    size = len(payload) + STUFFING + 8
+    size = len(payload) + BODY_MIN + STUFFING
     return done / SECONDS, done * size * BYTE_NS / 1e9 / SECONDS
 
 
@@ -141,12 +142,18 @@ def main() -> None:
         print(f"  {name:30}{order:7}{answer:9}{'':21}{order + answer:11}")
     print("  on classic CAN: {} frames, {} bits\n".format(*on_can()))
 
-    print(f"at {BAUD} baud                 orders/s   of the line   pieces of {PIECE}: of the line")
+    print(f"at {BAUD} baud            orders/s   of the line   pieces of {PIECE} bytes: of the line   with more credit")
+    piece = CODE.packed(0, bytes(PIECE))
     for delay_ms, loss in ((0, 0), (4, 0), (16, 0), (0, 0.01), (4, 0.01), (16, 0.01)):
-        orders, filled = delivered(FIRE.number, ORDER, delay_ms, loss)
-        _, pieces = delivered(CODE.number, CODE.packed(0, bytes(PIECE)), delay_ms, loss)
-        print(f"  {delay_ms:2} ms each way, {loss:4.0%} lost {orders:11.0f}{filled:13.0%}{pieces:28.0%}")
-    print(f"  the aim is all of the line at 16 ms; grbl does {GRBL_LINES} lines a second then")
+        orders, filled = delivered(FIRE.number, ORDER, delay_ms, loss, CREDIT_BYTES)
+        pieces = [delivered(CODE.number, piece, delay_ms, loss, credit)[1] for credit in (CREDIT_BYTES, MORE_BYTES)]
+        print(
+            f"  {delay_ms:2} ms each way, {loss:3.0%} lost{orders:9.0f}{filled:14.0%}{pieces[0]:35.0%}{pieces[1]:19.0%}"
+        )
+    print(
+        f"  aim: all of the line at 16 ms. {WINDOW} frames on the way hold back orders, {CREDIT_BYTES} bytes of credit"
+    )
+    print(f"  pieces (with more: {MORE_BYTES}). grbl: {GRBL_LINES} lines a second at 16 ms")
 
 
 if __name__ == "__main__":

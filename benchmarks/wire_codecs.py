@@ -1,11 +1,14 @@
 """The same 42 bytes in our frames and in those of others: a time, 18 words, two bytes; field values to bytes and back.
 
+All give the values in the order of the fields, and get them back with their names.
+
 MAVLink's RC_CHANNELS has just these fields. MAVLink and Cyphal are the packages pymavlink and pycyphal, at the lowest
 layer that makes a whole frame. The Klipper-style block is written here from Klipper's document alone (message blocks,
 variable length quantities: docs/Protocol.md, https://www.klipper3d.org/Protocol.html), with a table for the CRC.
 """
 
 import struct
+from collections import namedtuple
 from functools import partial
 
 from pycyphal.transport import MessageDataSpecifier, Priority, Timestamp
@@ -19,7 +22,9 @@ from protocol.messages import Field, Message
 
 WORDS = 18
 LAYOUT = "<I18HBB"
-Values = tuple[int, ...]  # time, words, count, rssi
+NAMES = ("time_ms", *[f"word_{i}" for i in range(WORDS)], "count", "rssi")
+Values = tuple[int, ...]  # in this order
+Record = namedtuple("Record", NAMES)
 
 
 def values(time_ms: int) -> Values:
@@ -33,8 +38,7 @@ class Softrig:
     name, pure = "softrig", True
     seed = 0x12345678
     message = Message(
-        0x50, "same", Field("time_ms", "I"), *[Field(f"word_{i}", "H") for i in range(WORDS)],
-        Field("count", "B"), Field("rssi", "B"),
+        0x50, "same", *[Field(name, letter) for name, letter in zip(NAMES, "I" + WORDS * "H" + "BB", strict=True)],
     )  # fmt: skip
 
     def __init__(self) -> None:
@@ -127,7 +131,7 @@ class Cyphal:
         self._frames.clear()
         self._parser.process_next_chunk(data, self._stamp)
         whole = [frame.payload for frame in self._frames if TransferCRC.new(frame.payload).check_residue()]
-        return [struct.unpack(LAYOUT, payload[:-4]) for payload in whole]
+        return [Record(*struct.unpack(LAYOUT, payload[:-4])) for payload in whole]
 
     def told(self, record: Values) -> Values:
         """Return the values of a record that was received."""
@@ -187,7 +191,7 @@ class KlipperStyle:
             elif len(received) - at < length:
                 break
             elif self._whole(received[at : at + length]):
-                records.append(self._numbers(received[at + self.header : at + length - self.trailer])[1:])
+                records.append(Record(*self._numbers(received[at + self.header : at + length - self.trailer])[1:]))
                 at += length
             else:
                 at = self._behind_sync(received, at)
