@@ -108,6 +108,18 @@ def test_a_damaged_frame_counts_eight_for_its_sender_and_is_repeated(rig):
     assert (one.errors.transmit, two.errors.receive, two.received) == (7, 0, [Frame(0x100)])
 
 
+def test_the_frames_of_one_sender_alone_can_be_damaged(rig):
+    one, two, three = (rig.station() for _ in range(3))
+    rig.wire.spoil(2, two)
+
+    one.send(Frame(0x100))
+    two.send(Frame(0x200))
+    rig.run_ms(2)
+
+    assert (one.failures, two.failures) == (0, 2)
+    assert three.received == [Frame(0x100), Frame(0x200)]
+
+
 def test_thirty_two_damaged_frames_put_the_sender_off_the_bus(rig):
     one, two = rig.station(), rig.station()
     rig.wire.spoil(32)

@@ -12,6 +12,7 @@ How a frame ends is worked out in canpassage.py. ASSUMED: a sender that asks wit
 DEVIATION: no overload frames; propagation takes no time.
 """
 
+from collections import Counter
 from functools import partial
 
 from hil_sim.clock import Clock, Event
@@ -31,7 +32,7 @@ class CanWire:
         self._busy = False
         self._free_us = 0  # when the intermission ends
         self._begin_at: Event | None = None
-        self._spoiled = 0
+        self._spoiled: Counter[Node | None] = Counter()  # frames to damage, by their sender, None: of any
         self._held_us: dict[Node, int] = {}
         self._quiet_ns = 0  # since when the wire is recessive
         self._off: dict[Node, int] = {}  # quiet times that each still has to wait for
@@ -48,9 +49,9 @@ class CanWire:
         for kept in (self._held_us, self._off):
             kept.pop(node, None)
 
-    def spoil(self, count: int) -> None:
-        """Damage the next frames."""
-        self._spoiled += count
+    def spoil(self, count: int, sender: Node | None = None) -> None:
+        """Damage the next frames, of one sender or of any."""
+        self._spoiled[sender] += count
 
     def request(self) -> None:
         """See whether anybody has something to send, as soon as the wire is free."""
@@ -80,8 +81,9 @@ class CanWire:
         passage = Passage(senders, [node for node in self._present() if node not in senders])
         for node in list(self.nodes):
             node.began() if node in senders else node.edge()
-        if passage.whole and self._spoiled:
-            self._spoiled -= 1
+        blamed = [node for node in (*senders, None) if self._spoiled[node]]
+        if passage.whole and blamed:
+            self._spoiled[blamed[0]] -= 1
             passage.fail(len(passage.bits.sent) // 2)
         self._clock.at(self._clock.now_us + _us(passage.length_ns), lambda: self._finish(passage))
 
