@@ -16,7 +16,7 @@ from contextlib import suppress
 from typing import Any
 
 from host.conversation import Conversation, Recorder
-from host.errors import Interrupted, LinkLost, Silent, SoftrigError
+from host.errors import BadRequest, Interrupted, LinkLost, Silent, SoftrigError
 from host.link import Link
 from host.orders import Orders
 from host.outages import Interruption
@@ -82,6 +82,22 @@ class Robot(Orders):
             talk.wait(lambda: False, self.now_ms() + AGAIN_MS)
             talk.renew()
             talk.wait(lambda: talk.session.open)
+
+    def attach(self, session: int = 0) -> int:
+        """Take over the lease and the running program of a session, 0: of whichever has them; return its number."""
+        talk = self.talk
+        talk.wait(lambda: talk.session.open)
+        holder: int = talk.session.identity.holder
+        if not holder:
+            raise BadRequest("no program runs, and nobody holds the lease: there is nothing to take over")
+        if session not in (0, holder):
+            raise BadRequest(f"session {session} has nothing to take over: the robot obeys session {holder}")
+        talk.renew(holder)
+        talk.wait(lambda: talk.session.open)
+        if not talk.session.mute:
+            talk.session.hearing.holds_lease = True
+        self.status()  # its answer says that the robot has followed
+        return holder
 
     def endure(self, patience_ms: int, stops: bool = False) -> None:
         """Go on over a line that breaks or falls silent for up to that long; with `stops`, only to stop the robot."""

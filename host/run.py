@@ -142,6 +142,13 @@ def watch(robot: Robot, progress: Progress, if_lost: IfLost) -> Ending:
     return Ending(_result(event), event)
 
 
+def outliving(code: bytes) -> bytes:
+    """Return the program (header and code) as one that runs on when its host is gone."""
+    read = program.read_header(code[: program.HEADER_BYTES])
+    body = code[program.HEADER_BYTES :]
+    return program.header(body, read.robot_crc, read.flags | program.OUTLIVES_HOST) + body
+
+
 def upload(robot: Robot, code: bytes, progress: Progress) -> None:
     """Send a program to a robot that is connected; nothing moves."""
     header, body = code[: program.HEADER_BYTES], code[program.HEADER_BYTES :]

@@ -34,6 +34,7 @@ class FakeRobot:
         self.now_ms = 0  # of the line
         self.started_ms = 0  # the line's time at which the robot's clock began
         self.role = messages.HOLDER
+        self.holder = 0
         self.state = messages.IDLE
         self.session = 0
         self.refuse: dict[str, tuple[int, int, int, int]] = {}  # message -> code, channel, value, limit
@@ -156,7 +157,8 @@ class FakeRobot:
         self._post(
             messages.IDENTITY, session=order.session, boot=self.boot, uptime_ms=self.uptime_ms,
             dictionary_crc=self.seed, dictionary_bytes=len(self.dictionary), version=frames.VERSION,
-            state=self.state, role=self.role, node=0, secured=0, slots=16, bytes=448, byte_ns=0, holder=0, step=0,
+            state=self.state, role=self.role, node=0, secured=0, slots=16, bytes=448, byte_ns=0,
+            holder=self.holder, step=0,
             nonce_a=0, nonce_b=0, proof_a=0, proof_b=0, firmware=b"softrig 0.1.0",
         )  # fmt: skip
 

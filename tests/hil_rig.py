@@ -62,6 +62,10 @@ class HilRig:
         schedule(self.bench, self.bench.clock.now_us, fault)
         return self.now_s
 
+    def later(self, seconds: float, fault: str) -> None:
+        """Let a fault happen that long from now."""
+        schedule(self.bench, self.bench.clock.now_us + round(seconds * 1e6), fault)
+
     def coil(self, label: str) -> CoilState:
         """Return what is being done to a coil."""
         record = self.bench.coil(label)

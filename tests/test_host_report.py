@@ -15,7 +15,14 @@ from host.run import Ending
 from tests.fake_robot import PROFILE
 
 SCRIPT = "gait 1\nrobot circular\nparam duty = 60 %\nfire A at $duty for 600 ms\n"
-INFO = {"robot": "circular", "firmware": "0.1.0", "protocol": 1, "dictionary": "1648c81d", "state": "idle"}
+INFO = {
+    "session": 7,
+    "robot": "circular",
+    "firmware": "0.1.0",
+    "protocol": 1,
+    "dictionary": "1648c81d",
+    "state": "idle",
+}
 LINE = {"bytes_sent": 1, "bytes_received": 2, "frames_resent": 0, "frames_damaged": 0, "telemetry_missed": 0}
 
 

@@ -45,6 +45,16 @@ def without_option(command: F) -> F:
     )(command)
 
 
+def if_lost_options(command: F) -> F:
+    """Add --if-lost and --patience: what a run does when its line breaks."""
+    patience = click.option(
+        "--patience", default="10s", show_default=True, callback=_milliseconds, metavar="TIME", help="With a lost line."
+    )
+    choice = click.Choice(["reattach", "stop"])
+    what = "When the line breaks and comes back: go on in the same session, or stop the robot."
+    return click.option("--if-lost", type=choice, default="reattach", show_default=True, help=what)(patience(command))
+
+
 def json_option(command: F) -> F:
     """Add --json; errors are then told on stdout as well."""
     return click.option(
@@ -68,6 +78,11 @@ def _measured(text: str, factors: dict[str, int]) -> int:
     if match is None or match[2] not in ("", *factors):
         raise click.BadParameter(f"{text!r}: write a number and {' or '.join(factors)}")
     return round(float(match[1]) * (factors[match[2]] if match[2] else next(iter(factors.values()))))
+
+
+def _milliseconds(ctx: click.Context, param: click.Parameter, value: str) -> int:
+    """Return the time in milliseconds."""
+    return time_ms(value)
 
 
 def _split(ctx: click.Context, param: click.Parameter, values: tuple[str, ...]) -> tuple[str, ...]:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
-from host.cli.options import given_key, json_option, robot_option, without_option
+from host.cli.options import given_key, if_lost_options, json_option, robot_option, without_option
 from host.cli.output import emit, json_line, note, writing
 from host.cli.progress import shown
 from host.cli.scripts import place, proven
@@ -18,7 +18,7 @@ from host.link import open_link, wall_s
 from host.log import LogWriter
 from host.report import Facts, Took, lines, report
 from host.robot import Robot
-from host.run import Ending, Keeper, Progress, run, upload
+from host.run import Ending, IfLost, Keeper, Progress, outliving, run, upload
 from host.view import check_pictures, draw_run
 
 
@@ -29,6 +29,8 @@ from host.view import check_pictures, draw_run
 @click.option("--dry-run", is_flag=True, help="Check and upload, but do not arm: nothing moves.")
 @click.option("--log", "log_path", type=click.Path(path_type=Path), metavar="FILE.mcap", help="Record everything.")
 @click.option("--plot", "plot_path", type=click.Path(path_type=Path), metavar="FILE.svg", help="Draw the run.")
+@if_lost_options
+@click.option("--outlive", is_flag=True, help="The program goes on should this host die; `softrig attach` takes it up.")
 @without_option
 @json_option
 def command(
@@ -39,6 +41,9 @@ def command(
     dry_run: bool,
     log_path: Path | None,
     plot_path: Path | None,
+    if_lost: str,
+    patience: int,
+    outlive: bool,
     as_json: bool,
 ) -> None:
     """Check a script, upload it, arm, run, watch, disarm and report.
@@ -60,8 +65,12 @@ def command(
             _attach(log, compiled, face, address)
             coils = len(face.profile.labels)
             with shown(len(compiled.code), coils, worst.longest_ms / 1000, quiet=as_json) as progress:
-                ending, took = _run(face, compiled.program, dry_run, without, progress)
-            facts = Facts(compiled, address, face.info(), face.statistics(), link.observer, took)
+                if outlive:
+                    note(f"session {face.talk.session.number}: `softrig attach` takes the program up again")
+                code = outliving(compiled.program) if outlive else compiled.program
+                orders = Orders(dry_run, without, IfLost(if_lost == "stop", patience))
+                ending, took = _run(face, code, orders, progress)
+            facts = Facts(compiled, address, face.info(), face.statistics(), link.observer, took, face.interruptions())
             fields = report(ending, keeper.recording, facts)
         if log:
             log.attach("report.json", json_line(fields).encode(), "application/json")
@@ -75,16 +84,22 @@ def command(
         raise error
 
 
-def _run(
-    face: Robot, code: bytes, dry_run: bool, without: tuple[str, ...], progress: Progress
-) -> tuple[Ending | None, Took]:
+class Orders(NamedTuple):
+    """How a program is to be run, if at all."""
+
+    dry_run: bool
+    without: tuple[str, ...]
+    if_lost: IfLost
+
+
+def _run(face: Robot, code: bytes, orders: Orders, progress: Progress) -> tuple[Ending | None, Took]:
     """Run the program, or only upload it; return how it ended and how long it took."""
     begun = wall_s(), face.link.now_s()
     ending = None
-    if dry_run:
+    if orders.dry_run:
         upload(face, code, progress)
     else:
-        ending = run(face, code, progress, without)
+        ending = run(face, code, progress, orders.without, orders.if_lost)
     return ending, Took(wall_s() - begun[0], face.link.now_s() - begun[1])
 
 
