@@ -244,3 +244,21 @@ def test_two_hosts_at_one_robot_get_their_own_answers(robot, bench):
 def test_nobody_at_that_number_is_told_with_those_who_are_there(bus):
     with pytest.raises(Silent, match="robot 9 does not answer; on this bus: 1"):
         Robot(CanLink(bus, 9)).connect()
+
+
+def test_both_worlds_do_the_same_on_can():
+    """The same accesses to the controller at the same times, in CPython and in real MicroPython."""
+    traces = []
+    for world in ("cpython", "micropython"):
+        bus = CanBus.open(f"can:softrig:circular?body=still&world={world}")
+        robot = Robot(CanLink(bus, 1))
+        robot.connect()
+        robot.arm()
+        robot.fire(["A"], 300, 100)
+        list(robot.listen(200))
+        bench = bus.observers[1]
+        assert bench.crashes == []
+        traces.append((bench.clock.now_us, bench.trace_sha256()))
+        robot.link.close()
+
+    assert traces[0] == traces[1]

@@ -221,9 +221,9 @@ def test_a_rate_that_the_crystal_does_not_give_is_refused(tmp_path, rate):
     assert rig.run() == [f"bit rate {rate} Hz, with a crystal of 8000000 Hz"]
 
 
-def printed(interpreter, *arguments) -> list[str]:
+def printed(interpreter, *arguments, trial="can_trial.py") -> list[str]:
     paths = {"MICROPYPATH": f"{ROOT}:.frozen", "PYTHONPATH": str(ROOT)}
-    command = [interpreter, str(ROOT / "tests" / "can_trial.py"), *arguments]
+    command = [interpreter, str(ROOT / "tests" / trial), *arguments]
     done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, **paths}, check=False)
     assert done.returncode == 0, done.stdout[-500:] + done.stderr
     return done.stdout.splitlines()
@@ -235,3 +235,9 @@ def test_nothing_is_allocated_once_it_has_begun():
 
 def test_both_interpreters_tell_the_chip_the_same():
     assert printed(micropython.interpreter()) == printed(sys.executable)
+
+
+def test_a_look_at_the_bus_allocates_nothing():
+    locked = printed(micropython.interpreter(), "lock", trial="canport_trial.py")
+
+    assert locked == printed(sys.executable, trial="canport_trial.py")
