@@ -88,7 +88,8 @@ def look(port):
 chip = Chip()
 port = CanPort(chip, Level(chip), NODE)
 bodies = [frames.seal(kind, 1, 2, bytes(range(length)), 0, 0) for kind, length in ((0x20, 8), (0x14, 0), (0x21, 60))]
-chip.arriving = Segmenter(NODE, HOST, False).feed(b"".join([frames.encode(body) for body in bodies]) + frames.STOP)
+segments = Segmenter(NODE, HOST, False).feed(frames.STOP + b"".join([frames.encode(body) for body in bodies]))
+chip.arriving = segments[:1]  # the rest comes while memory is locked
 for now_ms in range(0, 3000, 5):
     for taken in port.take(now_ms):
         print(now_ms, taken.robot, taken.host, taken.kind, len(taken.line))
@@ -96,6 +97,8 @@ for now_ms in range(0, 3000, 5):
             port.put(taken.line, taken.host)
             port.put(frames.encode(frames.seal(0x50, 0, 0, bytes(90), 0, 0)), taken.host)
     port.tell(0x1B000000, bytes(range(8)))
+    if now_ms == 1000:
+        chip.arriving = segments
     look(port)
     if now_ms % 500 == 0:
         print(now_ms, port.awake, port.waiting(), port.room(), chip.sent, chip.sum)
