@@ -7,13 +7,14 @@ where the payload lies.
 from pathlib import Path
 
 from docs.definitions import Place, Row, enums, rows
-from protocol import flight, frames, messages
+from protocol import canbus, flight, frames, messages
 
 TEMPLATE = Path(__file__).parent / "templates" / "softrig.h"
 C_TYPES = {
     "B": "uint8_t", "b": "int8_t", "H": "uint16_t", "h": "int16_t", "I": "uint32_t", "i": "int32_t",
     "s": "softrig_bytes",
 }  # fmt: skip
+PRIORITIES = ("SYNCHRONISE", "ORDERS", "ANSWERS", "GREETINGS", "TELEMETRY")
 CONSTANTS = (
     "VERSION", "RELIABLE", "NODE", "SEALED", "RESERVED", "HEAD_BYTES", "TAG_BYTES", "CRC_BYTES", "BODY_MIN", "BODY_MAX",
     "PAYLOAD_MAX", "FRAME_MAX", "GREETINGS_BELOW", "OPEN_FROM", "OPEN_BELOW",
@@ -30,6 +31,9 @@ def text() -> str:
         "AT_SYNC": str(messages.AT_SYNC),
         "STOP": "{" + ", ".join(f"0x{byte:02X}" for byte in frames.STOP) + "}",
         "STOP_BYTES": str(len(frames.STOP)),
+        "CAN_ALL": str(canbus.ALL),
+        "CAN_HOST": str(canbus.HOST),
+        **{f"CAN_{name}": str(getattr(canbus, name)) for name in PRIORITIES},
         "SHA256_K": _words(_round_constants()),
         "ENUMS": "\n".join([_kinds(), *(_enum(name, names) for name, names in enums().items())]),
         "MESSAGES": "\n".join(message(row) for row in rows()),

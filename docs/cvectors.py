@@ -19,6 +19,7 @@ def text() -> str:
     for vector in vectors.streams():
         kinds = [table[name].number for name in vector["kinds"]]
         calls.append(_stream(vector["wire"], kinds, vector["stops"], vector["why"]))
+    calls += [_segments(vector) for vector in vectors.segments()]
     filled = {
         "DICTIONARY_CRC": str(vectors.DICTIONARY_CRC),
         "SESSION": str(vectors.SESSION),
@@ -60,6 +61,12 @@ def _frame(vector: vectors.Json) -> str:
 
 def _stream(wire: str, kinds: list[int], stops: int, why: str) -> str:
     return f'stream("{wire}", "{"".join(f"{kind} " for kind in kinds)}", {stops}, "{why}");'
+
+
+def _segments(vector: vectors.Json) -> str:
+    numbers = ", ".join(str(int(vector[name])) for name in ("kind", "robot", "host", "from_robot", "fd"))
+    data = "".join(f"{len(each) // 2:02x}{each}" for each in vector["data"])
+    return f'segments({vector["identifier"]}u, {numbers}, "{vector["body"]}", "{data}", "CAN {vector["message"]}");'
 
 
 def _key(vector: vectors.Json) -> str:

@@ -196,7 +196,8 @@ def _telemetry(table: Table) -> dict[str, object]:
 def _can() -> dict[str, object]:
     names = {
         0: "the stop only", canbus.SYNCHRONISE: "`sync`", canbus.ORDERS: "orders and `alive` to a robot",
-        canbus.ANSWERS: "answers, events and `alive` from a robot", canbus.GREETINGS: "greetings",
+        canbus.ANSWERS: "`stopped`, answers, events and `alive` from a robot",
+        canbus.GREETINGS: "greetings but `stopped`",
         canbus.TELEMETRY: "open frames",
     }  # fmt: skip
     return {
@@ -211,6 +212,10 @@ def _can() -> dict[str, object]:
         "fd_lengths": "12, 16, 20, 24, 32, 48 or 64",
         "under_way": canbus.UNDER_WAY_MAX,
         "late_ms": canbus.LATE_MS,
+        "gap_ms": canbus.GAP_MS,
+        "wake_ms": canbus.WAKE_MS,
+        "sleep_ms": canbus.SLEEP_MS,
+        "byte_ns": canbus.BYTE_NS,
         "can_worked": _segments(),
         "beacons": _beacons(),
         "dbc_robot": dbc.ROBOT,

@@ -5,6 +5,7 @@
     refused    bytes on the wire that a receiver of `dictionary_crc` and `session` must not take, and why
     streams    what arrives in one piece, and the kinds of the frames in it; whether it holds a stop
     keys       a pairing key, what was said, the key of the session, its proof and a tag
+    can        bodies and the CAN frames that carry them, one after the other, as a sender's first
 
 `values` has numbers; what is left of a payload is written in hexadecimal digits, like all bytes.
 """
@@ -14,7 +15,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from docs.definitions import Place, Row, rows
-from protocol import frames, messages, secret
+from protocol import canbus, frames, messages, secret
 
 DICTIONARY_CRC = 0xC0FFEE42
 SESSION = 0x12345678
@@ -33,6 +34,7 @@ def text() -> str:
         "refused": list(refused()),
         "streams": list(streams()),
         "keys": [key()],
+        "can": list(segments()),
     }
     head = {"version": frames.VERSION, "dictionary_crc": DICTIONARY_CRC, "session": SESSION, "stop": frames.STOP.hex()}
     lines = [f' "{name}": {json.dumps(value)},' for name, value in head.items()]
@@ -149,6 +151,29 @@ def streams() -> Iterator[Json]:
         ("the letters in a payload are no stop", code, ["code"], 0),
     ):
         yield {"why": why, "wire": wire.hex(), "kinds": kinds, "stops": stops}
+
+
+def segments() -> Iterator[Json]:
+    """Yield bodies in their CAN frames: classic and FD, both directions, the longest, and a padded one."""
+    full = b"\x00\x00" + b"\x01" * (frames.PAYLOAD_MAX - 2)
+    for name, payload, robot, host, mtu in (
+        ("fire", usual("fire"), 3, canbus.HOST, canbus.CLASSIC),
+        ("fire", usual("fire"), 126, 126, canbus.FD),
+        ("code", full, 3, canbus.HOST, canbus.CLASSIC),
+        ("code", full, 3, canbus.HOST, canbus.FD),
+        ("telemetry", usual("telemetry"), 5, canbus.ALL, canbus.CLASSIC),
+        ("identity", usual("identity"), 5, 7, canbus.FD),
+        ("stopped", usual("stopped"), 5, canbus.ALL, canbus.CLASSIC),
+        ("sync", b"", canbus.ALL, canbus.HOST, canbus.CLASSIC),
+    ):
+        sealed = frame(name, payload, 0, 1, 2)
+        cutter = canbus.Segmenter(robot, host, sealed["from_robot"], mtu)
+        cut = cutter.feed(bytes.fromhex(sealed["wire"]))
+        yield {
+            "message": name, "kind": sealed["kind"], "robot": robot, "host": host, "from_robot": sealed["from_robot"],
+            "fd": mtu == canbus.FD, "body": sealed["body"], "identifier": cut[0].identifier,
+            "data": [each.data.hex() for each in cut],
+        }  # fmt: skip
 
 
 def key() -> Json:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from docs import vectors
-from protocol import frames, messages, secret
+from protocol import canbus, frames, messages, secret
 
 FILE = json.loads((Path(__file__).parents[1] / "docs" / "vectors.json").read_text(encoding="utf-8"))
 BY_NAME = {message.name: message for message in messages.MESSAGES}
@@ -90,6 +90,21 @@ def test_the_key_of_a_session_its_proof_and_a_tag_are_as_published():
     assert key == secret.prepared(bytes.fromhex(told["session_key"]))
     assert list(secret.proof(key)) == told["proof"]
     assert secret.tag(key, told["from_robot"], told["number"], bytes.fromhex(told["body"])).hex() == told["tag"]
+
+
+@pytest.mark.parametrize("vector", FILE["can"], ids=lambda vector: f"{vector['message']} {vector['fd']}")
+def test_can_frames_are_cut_and_put_together_as_they_are_published(vector):
+    body, from_robot, fd = bytes.fromhex(vector["body"]), vector["from_robot"], vector["fd"]
+    cutter = canbus.Segmenter(vector["robot"], vector["host"], from_robot, canbus.FD if fd else canbus.CLASSIC)
+    joiner = canbus.Assembler(from_robot)
+
+    cut = cutter.feed(frames.encode(body))
+    *before, taken = [joiner.feed(frame.identifier, True, frame.data, 0, fd) for frame in cut]
+
+    assert [frame.data.hex() for frame in cut] == vector["data"]
+    assert {frame.identifier for frame in cut} == {vector["identifier"]}
+    assert set(before) <= {None}
+    assert (taken.robot, taken.host, taken.line) == (vector["robot"], vector["host"], frames.encode(body))
 
 
 def test_the_vectors_are_the_same_each_time():

@@ -609,6 +609,95 @@ static inline int softrig_is_stop(softrig_decoder *decoder, uint8_t byte)
     return 1;
 }
 
+/* ---- CAN: bodies in segments; the stop is a standard frame with identifier 0 and the data STOP ---- */
+
+#define SOFTRIG_CAN_ALL 127u /* node of every robot, and of every host */
+#define SOFTRIG_CAN_HOST 1u /* node of a host that was not given one */
+#define SOFTRIG_CAN_CLASSIC 8u /* bytes of data in a frame */
+#define SOFTRIG_CAN_FD 64u
+
+/* Return the 29-bit identifier of the frames of a body. */
+static inline uint32_t softrig_can_identifier(uint8_t kind, unsigned robot, unsigned host, int from_robot)
+{
+    uint32_t priority = from_robot ? 3u : 2u;
+    if (kind == SOFTRIG_KIND_SYNC)
+        priority = 1u;
+    else if (kind < SOFTRIG_GREETINGS_BELOW && kind != SOFTRIG_KIND_STOPPED)
+        priority = 4u;
+    else if (kind >= SOFTRIG_OPEN_FROM && kind < SOFTRIG_OPEN_BELOW)
+        priority = 6u;
+    return priority << 26 | (uint32_t)kind << 18 | (from_robot ? 1ul << 17 : 0ul) | (uint32_t)robot << 10 | (uint32_t)host << 3;
+}
+
+/* Write the data of the next CAN frame of a body; `mtu` is SOFTRIG_CAN_CLASSIC or SOFTRIG_CAN_FD. `at` begins at 0 for
+ * each body, `counter` at 0 for each sender. Return the bytes of data, 0 when all of the body has been sent. */
+static inline int softrig_can_segment(const uint8_t *body, size_t size, size_t mtu, size_t *at, unsigned *counter, uint8_t *data)
+{
+    static const uint8_t lengths[] = {12, 16, 20, 24, 32, 48, 64};
+    size_t used = 1, left, i;
+    if (*at >= size)
+        return 0;
+    data[0] = (uint8_t)((*at == 0 ? 0x80u : 0u) | (*counter & 0x3Fu));
+    if (*at == 0 && mtu == SOFTRIG_CAN_FD)
+        data[used++] = (uint8_t)size;
+    left = size - *at < mtu - used ? size - *at : mtu - used;
+    memcpy(data + used, body + *at, left);
+    used += left;
+    *at += left;
+    *counter = (*counter + 1) & 0x3Fu;
+    if (*at == size)
+        data[0] |= 0x40u;
+    for (i = 0; used > 8 && used != lengths[i];) {
+        if (used > lengths[i])
+            i++;
+        else
+            data[used++] = 0;
+    }
+    return (int)used;
+}
+
+/* Puts together what one sender sends, one body at a time. Begin with all zeros. */
+typedef struct softrig_can_joiner {
+    uint8_t body[SOFTRIG_BODY_MAX + SOFTRIG_CAN_FD];
+    size_t held;
+    size_t told; /* length of the body, on CAN FD */
+    uint32_t identifier;
+    unsigned counter;
+    int open;
+} softrig_can_joiner;
+
+/* Take the data of a CAN frame; return the bytes of the body that it completes, which lies in joiner->body, else 0. */
+static inline int softrig_can_join(softrig_can_joiner *joiner, uint32_t identifier, const uint8_t *data, size_t size, int fd)
+{
+    size_t used = 1;
+    if (size < 1 || size > SOFTRIG_CAN_FD)
+        return 0;
+    if (data[0] & 0x80u) {
+        joiner->open = 1;
+        joiner->held = 0;
+        joiner->identifier = identifier;
+        joiner->told = fd && size > 1 ? data[used++] : 0u;
+    } else if (joiner->open && identifier == joiner->identifier && (data[0] & 0x7Fu) == joiner->counter) {
+        return 0; /* it came twice */
+    } else if (!joiner->open || identifier != joiner->identifier || (data[0] & 0x3Fu) != ((joiner->counter + 1) & 0x3Fu)) {
+        joiner->open = 0;
+        return 0;
+    }
+    joiner->counter = data[0] & 0x3Fu;
+    if (joiner->held + (size - used) > sizeof joiner->body) {
+        joiner->open = 0;
+        return 0;
+    }
+    memcpy(joiner->body + joiner->held, data + used, size - used);
+    joiner->held += size - used;
+    if (!(data[0] & 0x40u))
+        return 0;
+    joiner->open = 0;
+    if (joiner->told > joiner->held || (joiner->told ? joiner->told : joiner->held) > SOFTRIG_BODY_MAX)
+        return 0;
+    return (int)(joiner->told ? joiner->told : joiner->held);
+}
+
 /* ---- messages ---- */
 
 /* 0x01 hello: Opens a session; the answer is identity. Never disturbs a program that is running. */

@@ -131,6 +131,27 @@ static void key(const char *pairing_key, const char *hello, uint32_t nonce_a, ui
     check(memcmp(covered.at + HELD_MAX / 2, expected.at, SOFTRIG_TAG_BYTES) == 0, "tag");
 }
 
+/* A body becomes these CAN frames, and they become the body again; the data follow one another, each after its size. */
+static void segments(uint32_t identifier, unsigned kind, unsigned robot, unsigned host, int from_robot, int fd,
+                     const char *body_digits, const char *data_digits, const char *what)
+{
+    static held body, data;
+    static softrig_can_joiner joiner;
+    uint8_t cut[SOFTRIG_CAN_FD];
+    size_t at = 0, from = 0, mtu = fd ? SOFTRIG_CAN_FD : SOFTRIG_CAN_CLASSIC;
+    unsigned counter = 0;
+    int size, joined = 0;
+    hex(&body, body_digits);
+    hex(&data, data_digits);
+    check(softrig_can_identifier((uint8_t)kind, robot, host, from_robot) == identifier, what);
+    while ((size = softrig_can_segment(body.at, body.size, mtu, &at, &counter, cut)) > 0) {
+        check(from < data.size && data.at[from] == size && memcmp(cut, data.at + from + 1, (size_t)size) == 0, what);
+        from += 1 + (size_t)size;
+        joined = softrig_can_join(&joiner, identifier, cut, (size_t)size, fd);
+    }
+    check(from == data.size && same(joiner.body, joined, &body), what);
+}
+
 @MESSAGES@
 int main(void)
 {
