@@ -42,3 +42,27 @@ def dictionary_of(profile: bytes) -> bytes:
 def profile_text(dictionary: bytes) -> bytes:
     """Return the profile that ends the dictionary, as it stands in the robot's flash."""
     return dictionary.split(b"\n\n", 1)[-1]
+
+
+def texts_of(help_text: bytes) -> dict[str, str]:
+    """Return the help texts by the name that each line begins with: `fire`, `fire.coils`."""
+    lines = help_text.decode("utf-8", "replace").splitlines()
+    return {name: text for name, _, text in (line.partition(" ") for line in lines) if name}
+
+
+def explained(dictionary: bytes, texts: dict[str, str]) -> list[str]:
+    """Return the definitions as a reader wants them: each line, and below it what the robot says of its names."""
+    told: list[str] = []
+    for line in dictionary.split(b"\n\n", 1)[0].decode("utf-8", "replace").splitlines():
+        told.append(line)
+        told += [f"    {name.rpartition('.')[2]}: {texts[name]}" for name in _names(line.split()) if name in texts]
+    return told
+
+
+def _names(words: list[str]) -> list[str]:
+    """Return the names that a definition defines, as the help texts have them."""
+    if words[0] == "var":
+        return [f"var.{words[2].partition(':')[0]}"]
+    if not words[0].isdigit():
+        return []
+    return [words[1], *(f"{words[1]}.{field.partition(':')[0]}" for field in words[2:])]

@@ -14,6 +14,7 @@ from typing import Any
 from host.answers import Answers
 from host.errors import SoftrigError
 from host.handshake import Handshake
+from host.pages import Pages
 from host.profile import Profile
 from host.recognition import changed, restarted
 from host.records import Record, Status, Telemetry, event_of, state_name, stopped_of
@@ -35,6 +36,7 @@ class Hearing:
         self.holds_lease = False
         self.stopped = False  # the robot has answered a stop
         self.last: Telemetry | None = None
+        self.help: Pages | None = None  # the help texts, once somebody wants to read them
         self.told_ms: int | None = None  # when telemetry came last
         self.trouble: SoftrigError | None = None
         self.greeted_ms: int | None = None  # the first hello to an open session that is not answered
@@ -130,6 +132,10 @@ class Hearing:
         if self.profile:
             if kind == messages.IDENTITY.number:
                 self._recognised(messages.IDENTITY.unpack(payload), now_us, len(payload))
+            elif kind == messages.DICTIONARY_PAGE.number and self.help:
+                page = messages.DICTIONARY_PAGE.unpack(payload)
+                if page.part == messages.HELP:
+                    self.help.take(page.offset, page.text, now_us // 1000)
             return
         stranger = handshake.identity is None
         handshake.take(kind, payload, now_us // 1000)

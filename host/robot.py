@@ -16,6 +16,7 @@ from contextlib import suppress
 from typing import Any
 
 from host.conversation import Conversation, Recorder
+from host.definitions import texts_of
 from host.errors import BadRequest, Interrupted, LinkLost, Silent, SoftrigError
 from host.link import Link
 from host.orders import Orders
@@ -26,6 +27,7 @@ from protocol import causes, messages
 PATIENCE_MS = 1500  # for the lease of a host that has gone
 AGAIN_MS = 250
 STOP_WAIT_MS = 2000
+HELP_WAIT_MS = 20_000
 GOODBYE_MS = 1000
 LINGER_MS = 2000  # between the end of a program and the event that says so
 ENDS = ("finished", "aborted", "tripped", "disarmed")
@@ -118,6 +120,15 @@ class Robot(Orders):
             "may_arm": not self.talk.session.mute,
             "coils": list(profile.labels),
         }
+
+    def help_texts(self) -> dict[str, str]:
+        """Return what the robot says that each message, field and variable of its dictionary means."""
+        talk = self.talk
+        pages = talk.session.read_help()
+        talk.wait(lambda: pages.complete, self.now_ms() + HELP_WAIT_MS)
+        if not pages.complete:
+            raise LinkLost("the robot did not give the help texts of its dictionary")
+        return texts_of(pages.text)
 
     def leave_armed(self) -> None:
         """Go without disarming: the robot disarms itself when its lease runs out."""

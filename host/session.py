@@ -16,8 +16,9 @@ from typing import Any
 from host.answers import Asked
 from host.dictionaries import Known, Unknown
 from host.errors import BadRequest, LinkLost, NotPaired, Refused
-from host.handshake import Handshake
+from host.handshake import Handshake, page_question
 from host.hearing import Hearing
+from host.pages import Pages
 from host.pairing import Opening, keyless, may_order, session_key
 from host.records import Record
 from host.selections import selection_of
@@ -90,6 +91,11 @@ class Session:
         self.hearing.answers.expect(seq, Asked(message.name, now_us // 1000, values))
         return seq
 
+    def read_help(self) -> Pages:
+        """Have the help texts of the dictionary read; they are there once the pages are complete."""
+        self.hearing.help = Pages()
+        return self.hearing.help
+
     def room(self) -> int:
         """Return how many more orders may be queued now."""
         return int(self._link.room())
@@ -128,7 +134,7 @@ class Session:
             out = self._ask(now_us // 1000)
         else:
             self._check(now_us // 1000)
-        if self.open and not self.mute:
+        if self.open:
             self._talk(now_us)
             out += self._link.poll(now_us // 1000)
         if out:
@@ -150,6 +156,8 @@ class Session:
             due.append(1000 * resend_ms)
         if hearing.holds_lease:
             due.append(self._written_us + KEEPALIVE_US)
+        if hearing.help and (page_ms := hearing.help.due_ms()):
+            due.append(1000 * page_ms)
         if self._listens:
             due.append(hearing.keeper.due_us(now_us))
         return max(min(due), now_us + 1000)
@@ -182,6 +190,9 @@ class Session:
     def _talk(self, now_us: int) -> None:
         """Have the link say what is due unasked: a question for the clock, or only that the host lives."""
         asks = self._listens and self.hearing.silence.on_time()
+        if self.hearing.help:
+            for place in self.hearing.help.due(now_us // 1000):
+                self._link.post(*page_question(messages.HELP, *place))
         question = self.hearing.keeper.question(now_us) if asks else None
         if question is not None:
             self._link.post(messages.CLOCK_REQUEST.number, question)
@@ -201,7 +212,8 @@ class Session:
         self._link.begin(identity.dictionary_crc, self.number, key)
         self._link.granted(identity.slots, identity.bytes)
         self._link.byte_ns = identity.byte_ns
-        self._link.acknowledge()  # the robot takes the session up with its first frame
+        if not self.mute:
+            self._link.acknowledge()  # the robot takes the session up with its first frame
 
     def _ask(self, now_ms: int) -> bytes:
         if self.hearing.trouble:  # of what a robot said that answered a stop

@@ -33,6 +33,7 @@ class FakeRobot:
         self.boot = 1
         self.now_ms = 0  # of the line
         self.started_ms = 0  # the line's time at which the robot's clock began
+        self.help_text = b"fire Heat coils for a limited time.\nfire.hold_ms Off again after this long.\n"
         self.role = messages.HOLDER
         self.holder = 0
         self.state = messages.IDLE
@@ -96,7 +97,8 @@ class FakeRobot:
         if message is messages.HELLO:
             self._hello(order)
         elif message is messages.DICTIONARY:
-            page = self.dictionary[order.offset : order.offset + min(order.count, PAGE)]
+            text = self.help_text if order.part == messages.HELP else self.dictionary
+            page = text[order.offset : order.offset + min(order.count, PAGE)]
             self._post(messages.DICTIONARY_PAGE, part=order.part, offset=order.offset, text=page)
         elif message.name in self.refuse:
             code, channel, value, limit = self.refuse[message.name]

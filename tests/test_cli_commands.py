@@ -389,3 +389,12 @@ def test_an_output_that_cannot_be_written_is_said_in_one_line():
 
     assert ended.stderr == "softrig: the output cannot be written: No space left on device\n"
     assert ended.returncode == 1
+
+
+def test_info_prints_what_the_messages_mean_as_the_robot_says_it(softrig, line):
+    told = softrig("info", "--dictionary")
+
+    assert "20 fire coils:I duty_permille:H[0..1000] hold_ms:H\n    fire: Heat coils for a limited time.\n" in told.out
+    assert "    hold_ms: Off again after this long.\n" in told.out
+    assert "STATES boot idle armed running tripped\n" in told.out
+    assert "definitions" in json.loads(softrig("info", "--dictionary", "--json").out)

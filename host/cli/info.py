@@ -10,18 +10,21 @@ import click
 from host.cli.connection import connected
 from host.cli.options import json_option, robot_option
 from host.cli.output import emit
+from host.definitions import explained
 
 
 @click.command("info")
 @robot_option()
+@click.option("--dictionary", "with_dictionary", is_flag=True, help="Print its messages, ranges and words, too.")
 @json_option
-def command(robot: str, as_json: bool) -> None:
+def command(robot: str, with_dictionary: bool, as_json: bool) -> None:
     """Say who a robot is and what it allows.
 
-    Labels, groups and limits come from the robot itself.
+    Labels, groups, limits and what its messages mean come from the robot itself.
     """
     with connected(robot, watch_only=True) as face:
         profile = face.profile
+        explanations = explained(face.dictionary, face.help_texts()) if with_dictionary else []
         fields = {
             "address": robot,
             **face.info(),
@@ -40,7 +43,9 @@ def command(robot: str, as_json: bool) -> None:
                 "program_bytes_max": profile.program.bytes_max,
             },
         }
-    emit(as_json, fields, _lines(fields))
+    if with_dictionary:
+        fields["definitions"] = explanations
+    emit(as_json, fields, [*_lines(fields), *explanations])
 
 
 def _lines(fields: dict[str, Any]) -> Iterator[str]:
