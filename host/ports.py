@@ -46,7 +46,8 @@ def benches(folder: Path | None = None) -> Iterator[Place]:
     for file in sorted((folder or runtime_folder()).glob("*.json")):
         try:
             fields = json.loads(file.read_text(encoding="utf-8"))
-            addresses = [fields.get("link") or fields.get("pty"), fields.get("tcp")]
+            others = list(fields.get("ptys", {}).values())[1:]  # of the robots after the first
+            addresses = [fields.get("link") or fields.get("pty"), fields.get("tcp"), *others, *fields.get("can", [])]
             alive = lives(int(fields["pid"]))
         except (OSError, ValueError, KeyError, AttributeError, TypeError):
             continue

@@ -140,7 +140,8 @@ def test_a_robot_that_goes_bus_off_comes_back_and_the_others_do_not_notice(eight
     eight.run_ms(1_000)
     eight.arm()
     mute, back = eight.benches[3].board.can.can, []
-    monkeypatch.setattr(mute, "recovered", lambda: back.append(eight.bus.now_s()))
+    recover = mute.recovered
+    monkeypatch.setattr(mute, "recovered", lambda: (back.append(eight.bus.now_s()), recover()))
     for robot in eight.robots.values():
         robot.fire(["C"], 500, 1_500)
     eight.bus._bus.desk.wire.spoil(32, mute)

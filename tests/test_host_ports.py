@@ -42,6 +42,15 @@ def test_a_running_bench_is_listed_with_each_of_its_addresses(tmp_path):
     assert found[0].about == f"circular, process {os.getpid()}"
 
 
+def test_a_bench_of_several_robots_is_listed_with_all_their_lines(tmp_path):
+    ptys, on_can = {"1": "/dev/pts/7", "2": "/dev/pts/8"}, ["can:slcan:/dev/pts/9@1", "can:slcan:/dev/pts/9@2"]
+    announce(tmp_path, os.getpid(), robot="circular@1,sphere-b@2", pty="/dev/pts/7", ptys=ptys, can=on_can)
+
+    found = [place.address for place in benches(tmp_path)]
+
+    assert found == ["/dev/pts/7", "/dev/pts/8", *on_can]
+
+
 def test_a_bench_without_a_link_is_listed_by_its_port(tmp_path):
     announce(tmp_path, os.getpid(), robot="circular", pty="/dev/pts/7", link=None)
 

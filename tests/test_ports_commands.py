@@ -37,6 +37,12 @@ def test_robots_fits_a_terminal_and_names_every_coil():
         (["circular", "--link", "/proc/robot"], 3, "link /proc/robot: No such file or directory"),
         (["./none.toml"], 3, "no such robot file"),
         (["circular", "--faults", "none.toml"], 2, "none.toml: No such file or directory"),
+        (["circular", "--can", "lin"], 2, "--can lin: write slcan, slcan=LINK, socketcand or socketcand=PORT"),
+        (["circular", "--can", "slcan="], 2, "--can slcan=: write slcan"),
+        (["circular", "--can", "socketcand=x"], 2, "--can socketcand=x: a TCP port is a number up to 65535"),
+        (["circular", "--can", "slcan=/proc/can"], 3, "link /proc/can: No such file or directory"),
+        (["circular@1,circular@1"], 2, "two robots have the number 1"),
+        (["circular,sphere-b", "--faults", "none.toml"], 2, "--faults is for one robot"),
         (["circular?faults=tests/none.toml"], 2, "tests/none.toml: No such file or directory"),
     ],
 )

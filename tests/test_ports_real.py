@@ -171,8 +171,8 @@ def sim(tmp_path):
     """Start `softrig sim` and return the process and what it said it listens on."""
     started = []
 
-    def start(*options):
-        command = [sys.executable, "-c", "from host.cli import main; main()", "sim", "circular", "--json", *options]
+    def start(*options, name="circular"):
+        command = [sys.executable, "-c", "from host.cli import main; main()", "sim", name, "--json", *options]
         process = subprocess.Popen(
             command, stdout=subprocess.PIPE, text=True, env={**os.environ, "XDG_RUNTIME_DIR": str(tmp_path)}
         )
@@ -202,3 +202,21 @@ def test_the_command_listens_until_a_signal_and_then_says_what_it_saw(sim, tmp_p
     assert abs(observed["travel_mm"]) < 0.1
     assert not link.is_symlink()
     assert not (tmp_path / "softrig" / f"{process.pid}.json").exists()
+
+
+def test_the_command_prints_the_address_of_each_robot_on_each_port_of_the_bus(sim, tmp_path):
+    link = tmp_path / "slcan"
+
+    _, listening = sim(
+        "--can", f"slcan={link}", "--can", "socketcand=0", name="circular@3?body=still,circular?body=still"
+    )
+
+    *_, port = listening["can"][2].split(":")
+    assert listening["can"] == [
+        f"can:slcan:{link}@1",
+        f"can:slcan:{link}@3",
+        f"can:socketcand:127.0.0.1:{port.split('@')[0]}@1",
+        f"can:socketcand:127.0.0.1:{port.split('@')[0]}@3",
+    ]
+    assert sorted(listening["ptys"]) == ["1", "3"]
+    assert Path(os.readlink(link)).exists()
