@@ -200,6 +200,17 @@ def test_segments_that_come_too_close_are_sent_again_and_kept_apart(robot, bus, 
     assert lane._gap_s > 0.0005
 
 
+def test_no_segment_is_lost_to_a_control_step_that_measures_coils(robot):
+    """A slot of the patrol makes a step three milliseconds long, and a segment comes every millisecond."""
+    robot.arm()
+    robot.fire(["A", "C"], 500, 2000)
+    code = bytes(4000)
+
+    robot.upload(program.header(code, robot.profile.crc), code)
+
+    assert robot.statistics()["frames_resent"] == 0
+
+
 def test_a_robot_survives_its_controller(robot, bench):
     bench.board.can.alive = False
     with pytest.raises(LinkLost):
