@@ -67,7 +67,8 @@ class Answers:
         if kind == messages.REFUSED.number:
             return self._refused(messages.REFUSED.unpack(payload), labels)
         if kind in DECODERS:
-            return self._taken(payload[0], DECODERS[kind](payload, labels))
+            answer = DECODERS[kind](payload, labels)
+            return self._taken(payload[0], answer)
         return None
 
     def _refused(self, row: Any, labels: tuple[str, ...]) -> Taken:
