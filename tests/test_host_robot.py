@@ -280,3 +280,17 @@ def test_every_byte_is_kept_with_both_clocks(line):
     assert b"".join(data for direction, data, _, _ in kept.lines if direction == "out") == line.written
     assert kept.lines[-1][2] - kept.lines[-1][3] == pytest.approx(0, abs=5)
     assert len(kept.records) == pytest.approx(4, abs=1)
+
+
+def test_a_program_starts_at_once_at_a_time_of_the_robot_or_at_the_next_sync(peer, line):
+    robot = Robot(line)
+    robot.connect()
+
+    robot.start()
+    robot.start(at_ms=robot.robot_ms() + 500)
+    robot.ready()
+
+    at_once, later, ready = [order.at_ms for _, name, order in peer.orders if name == "start"]
+    assert at_once == messages.AT_ONCE
+    assert later == pytest.approx(peer.uptime_ms + 500, abs=20)
+    assert ready == messages.AT_SYNC
