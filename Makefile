@@ -1,7 +1,7 @@
 # Everything runs from .venv, which `setup` makes. PYTHON=python3.12 picks the interpreter, TESTS=tests/test_x.py the tests.
 SHELL := /bin/sh
 .DEFAULT_GOAL := help
-.PHONY: help setup test check demo docs sensitivity bench campaign clean
+.PHONY: help setup test check demo docs sensitivity bench fuzz campaign clean
 
 AT_LEAST := import sys; sys.exit(sys.version_info < (3, 11))
 PYTHON ?= $(shell for name in python3 python3.14 python3.13 python3.12 python3.11; do \
@@ -20,6 +20,7 @@ help:
 	@echo "make docs    write the generated pages and pictures of docs/ again"
 	@echo "make sensitivity   measure docs/sensitivity.md again, a quarter of an hour"
 	@echo "make bench   run the benchmarks"
+	@echo "make fuzz    look for inputs that break protocol, session, firmware or CAN: a minute with atheris, then a million frames"
 	@echo "make campaign   1000 random faults and 1000 killed hosts on all cores; goes on where it was interrupted"
 	@echo "make clean   remove .venv, caches and out/"
 
@@ -68,6 +69,11 @@ sensitivity: $(READY)
 
 bench: $(READY)
 	@for file in benchmarks/*.py; do echo "== $$file"; $(BIN)/python $$file || exit 1; done
+
+fuzz: $(READY)
+	@$(BIN)/python -c 'import atheris' 2>/dev/null || $(BIN)/python -m pip install --quiet --only-binary :all: atheris 2>/dev/null || true
+	$(BIN)/python -m tests.fuzz
+	$(BIN)/python -m tests.million 1000000
 
 campaign: $(READY)
 	$(BIN)/python -m tests.campaign $(CAMPAIGN)

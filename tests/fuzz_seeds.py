@@ -1,0 +1,131 @@
+"""The seeds of the corpus: valid exchanges from which the fuzzer starts, written to tests/corpus by this file.
+
+.venv/bin/python -m tests.fuzz_seeds
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from protocol import frames, messages, program
+from tests.fuzz_script import SESSION
+
+CORPUS = Path(__file__).parent / "corpus"
+SAMPLES = {"B": 1, "b": -1, "H": 300, "h": -300, "I": 5, "i": -5, "s": b"\x01\x02"}
+ORDERS = [message for message in messages.MESSAGES if 0x10 <= message.number < 0x40]
+ANSWERS = [message for message in messages.MESSAGES if 0x40 <= message.number < 0x60]
+CODE = program.fire(1, 500, 100) + program.delay(50) + program.off(1) + program.halt()
+HELLO, WAIT, ARM, STOP, BREAK = b"\x01", b"\xfc", b"\x06\x00", b"\x03", b"\x15"  # acts of the target `core`
+IDENTITY, MOMENT = b"\x01\x01\x00", b"\x28\x00"  # acts of the target `session`
+
+
+def sized(data: bytes) -> bytes:
+    """Return data with its length before it, as a script reads it."""
+    return bytes((len(data),)) + data
+
+
+def payload_of(message: messages.Message) -> bytes:
+    """Return a payload of that message."""
+    fields = {field.name: SAMPLES[field.letter] for field in message.fields}
+    return message.pack(**fields | ({"session": SESSION} if "session" in fields else {}))
+
+
+def head(kind: int, payload: bytes, flags: int = frames.RELIABLE, seq: int = 0) -> bytes:
+    """Return what `Script.line` makes a frame of."""
+    return bytes((flags, kind, seq, 0)) + sized(payload)
+
+
+def told(message: messages.Message, payload: bytes, act: int) -> bytes:
+    """Return what makes the targets `core` and `session` hear that message."""
+    return bytes((act, message.number)) + sized(payload) + b"\x00"
+
+
+def decoder() -> Iterator[tuple[str, bytes]]:
+    for message in messages.MESSAGES:
+        line = head(message.number, payload_of(message))
+        yield message.name, b"\x01" + line + b"\x00" + sized(b"\x05noise") + b"\x01" + line
+    yield "stop", b"\x00" + sized(b"\x07\x21" + frames.STOP) + b"\x01" + head(0x14, bytes(8))
+    yield "long", (b"\x00" + sized(b"\x01" * 200)) * 3 + b"\x01" + head(0x14, bytes(228))
+    yield "node", b"\x01" + head(0x14, bytes(8), frames.RELIABLE | frames.NODE | 0x50)
+
+
+def link() -> Iterator[tuple[str, bytes]]:
+    said = b"".join(b"\x00\x00" + sized(bytes((number,)) * number) for number in range(6))
+    answered = b"\x00\x01" + sized(b"answer") + b"\x02\x01\xff\x03\x00"
+    exchange = said + b"\x52\x00\xff\x53\x01" + answered
+    for mode, name in ((0, "plain"), (1, "keyed"), (2, "node"), (3, "keyed node")):
+        yield name, bytes((mode,)) + exchange * 3
+    yield "lost", b"\x01" + said + b"\x52\x00\xff\x5b\x01\x20\x52\x01\xff\x53\x00" + b"\xf2\x00\xff\x53\x01" * 4
+    yield "again", b"\x01" + exchange + b"\x04\x01\x00\x04\x01\x01"
+    yield "session", b"\x08" + exchange + b"\x06\x00\x05\x0d\x01" + head(0x14, b"new") + exchange
+    yield "credit", b"\x00\x07\x00\x01\x02" + exchange + b"\x01\x01\x05" + sized(b"post") + b"\xf2\x01\xff\x53\x00"
+
+
+def core() -> Iterator[tuple[str, bytes]]:
+    armed = b"\x00" + HELLO + WAIT + ARM + WAIT * 5
+    fire = told(messages.FIRE, messages.FIRE.pack(coils=3, duty_permille=500, hold_ms=200), 0x07)
+    for message in ORDERS:
+        yield message.name, b"\x00" + HELLO + WAIT + told(message, payload_of(message), 0x07) + WAIT
+    yield "fired", armed + fire + WAIT * 4
+    yield "stopped", armed + fire + STOP + WAIT + told(messages.CLEAR, b"", 0x07) + WAIT
+    yield "played", armed + b"\x04" + sized(CODE) + WAIT * 3
+    yield "at sync", armed + b"\x24" + sized(CODE) + WAIT + b"\x02" + head(messages.SYNC.number, b"", 0) + WAIT * 2
+    yield "e-stop", armed + fire + BREAK + WAIT
+    yield "taken over", armed + fire + b"\x11" + WAIT + fire + WAIT
+    yield "keyed", b"\x01" + HELLO + WAIT + ARM + fire + WAIT
+
+
+def session() -> Iterator[tuple[str, bytes]]:
+    for message in ANSWERS:
+        act = 0x03 if message.number < 0x50 else 0x04
+        yield message.name, b"\x00" + IDENTITY + b"\x05\x00" + told(message, payload_of(message), act) + MOMENT * 3
+    pages = b"".join(b"\x02" + bytes((number,)) for number in range(80))
+    yield "pages", b"\x04" + IDENTITY + pages + MOMENT
+    yield "stop", b"\x00" + IDENTITY + b"\x87" + b"\x06" + head(5, payload_of(messages.STOPPED), 0) + MOMENT
+    yield "other version", b"\x00\x06" + head(6, messages.NAK.pack(kind=1, code=8, version=3), 0) + MOMENT
+    yield "silence", b"\x00" + IDENTITY + (b"\xf8\x00" * 90)
+
+
+def canbus() -> Iterator[tuple[str, bytes]]:
+    for mode, name in ((0, "classic"), (1, "fd"), (2, "from robot"), (3, "fd from robot")):
+        fed = b"\x04" + head(0x14, bytes(range(8))) + b"\x04" + head(0x40, bytes(60), 1, 1)
+        yield name, bytes((mode,)) + fed + b"\x01" * 12
+        yield name + " lost", bytes((mode,)) + fed + b"\x01\x01\x03\x01\x05\x02" + b"\x01" * 9
+    yield "stop", b"\x00\x00" + sized(frames.STOP) + b"\x01\x02" + bytes(4) + sized(b"STOP")
+
+
+def slcan() -> Iterator[tuple[str, bytes]]:
+    for text in (
+        "V\rN\rS6\rO\rt1232AABB\rT123456783112233\rr1230\rF\rC\r", "S9\rL\rt1230\rF\r",
+        "s011C\rO\rT000000008" + "00" * 8,
+        "Z0\rX1\rO\rO\rS6\rC\r", "\r\r?\rt12\rT1\rtFFF8\r",
+    ):  # fmt: skip
+        yield text[:5].replace("\r", "").replace("?", "_"), b"".join(b"\x11" + sized(each) for each in _halves(text))
+
+
+def socketcand() -> Iterator[tuple[str, bytes]]:
+    for name, text in (
+        ("send", "< send 123 2 AA BB >< send 12345678 0 >< sendrtr 123 0 >"),
+        ("echo", "< echo >< bcmmode >< send 7FF 1 0 >"),
+        ("broken", "< send 123 9 >< open >< send zzz 1 1 ><< >>< >"), ("long", "<" * 200),
+    ):  # fmt: skip
+        yield name, b"".join(b"\x11" + sized(each) for each in _halves(text))
+
+
+def _halves(text: str) -> tuple[bytes, bytes]:
+    return text[: len(text) // 2].encode(), text[len(text) // 2 :].encode()
+
+
+SEEDS = (decoder, link, core, session, canbus, slcan, socketcand)
+
+
+def files() -> Iterator[tuple[Path, bytes]]:
+    """Yield all seeds, each with where it is kept."""
+    for seeds in SEEDS:
+        for name, data in seeds():
+            yield CORPUS / seeds.__name__ / name.replace(" ", "-"), data
+
+
+if __name__ == "__main__":
+    for path, data in files():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data)
