@@ -13,6 +13,7 @@ from itertools import pairwise
 from typing import Any
 
 from host.gait.compiler import Compiled
+from host.linereport import interruption, line_lines
 from host.outages import Interruption
 from host.profile import Profile
 from host.recording import Recording
@@ -113,16 +114,6 @@ def fault(event: Event, recording: Recording, compiled: Compiled) -> Fields:
     }
 
 
-def interruption(each: Interruption, recording: Recording) -> Fields:
-    """Return when the line was interrupted, for how long, why, and what was missed."""
-    return {
-        "at_s": recording.seconds(each.host_ms),
-        "for_s": each.for_ms / 1000,
-        "cause": each.cause,
-        "telemetry_missed": each.telemetry_missed,
-    }
-
-
 def lines(fields: Fields) -> Iterator[str]:
     """Yield the report as a user reads it."""
     yield f"{fields['script']} on {fields['address']}: {fields['result']}"
@@ -144,19 +135,6 @@ def lines(fields: Fields) -> Iterator[str]:
         value = f" {item['value']} {item['unit']}" if item["unit"] else ""
         yield f"  fault            {item['code']} at {item['at_s']:.2f} s{where}{coil}: {item['cause']}{value}"
     yield from line_lines(fields)
-
-
-def line_lines(fields: Fields) -> Iterator[str]:
-    """Yield what the line did, and how the robot's clock stood to the host's."""
-    for each in fields["interruptions"]:
-        when = f"at {each['at_s']:.2f} s for {each['for_s']:.2f} s"
-        yield f"  interrupted      {when}: {each['cause']}; {each['telemetry_missed']} records missed"
-    link = fields["link"]
-    traffic = f"{link['bytes_sent']} bytes out, {link['bytes_received']} in, {link['frames_resent']} frames resent"
-    yield f"  line             {traffic}, {link['frames_damaged']} damaged, {link['telemetry_missed']} missed"
-    if link.get("clock_bound_ms") is not None:
-        drift = f"drifts {link['clock_drift_ppm']:.0f} ppm, known to {link['clock_bound_ms']:.1f} ms"
-        yield f"  robot's clock    {link['clock_offset_ms'] / 1000:.3f} s ahead of the host's, {drift}"
 
 
 def _observed_lines(observed: Fields) -> Iterator[str]:

@@ -11,10 +11,11 @@ import click
 from host.cli.options import given_key, if_lost_options, json_option, robot_option
 from host.cli.output import emit, note
 from host.errors import BadRequest
+from host.linereport import interruption, line_lines
 from host.link import open_link
 from host.log import LogWriter
 from host.records import as_json as fields_of
-from host.report import coils, interruption, line_lines
+from host.report import coils
 from host.robot import Robot
 from host.run import TELEMETRY_MS, Ending, IfLost, Keeper, watch
 
