@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import closing
+
 import click
 
 from host.cli.options import robot_option
@@ -13,8 +15,5 @@ from protocol import frames, messages
 @robot_option(ordered=False)
 def command(robot: str) -> None:
     """Start the programs that wait for this word: on CAN those of all robots on the bus, unless one is named."""
-    link = open_link(robot)
-    try:
+    with closing(open_link(robot)) as link:
         link.write(frames.encode(frames.seal(messages.SYNC.number, 0, 0, b"", 0, 0)))
-    finally:
-        link.close()
