@@ -33,7 +33,7 @@ PARTS = (
     ("S1", "Emergency stop, two NC contacts", "1", "One for /OE, one for the supply; neither needs firmware."),
     ("F1", "Fuse", "1", "See the power budget."),
     ("NTC", "10 k, B 3950, and 10 k 1 %", "1", "The core's temperature; open and short are seen as such."),
-    ("U7", "MCP2515, crystal 8 MHz, 3.3 V transceiver", "option", "CAN, once the robot has a number; a classic controller, which knows no CAN FD."),
+    ("U7", "MCP2515, crystal 8 MHz, 3.3 V transceiver", "option", "CAN, once the robot has a number; not CAN FD."),
     ("U8", "LSM6DS3TR-C", "spheres", "Attitude, in the core's axes."),
     ("", "Isolated USB serial adapter, 3.3 V", "1", "The host's ground must not carry coil current."),
 )  # fmt: skip
