@@ -100,7 +100,7 @@ def test_a_stop_finds_room_while_others_flood_the_robot(robot, bench):
 
 
 def test_a_stop_by_can_ends_what_the_serial_line_has_ordered():
-    link = open_serial("sim:circular?body=still")
+    link = open_serial("sim:circular?body=still&node=1")
     robot = Robot(link)
     robot.connect()
     robot.arm()
@@ -164,7 +164,7 @@ def test_a_stranger_hears_beacons_of_state_and_coils(robot, bench):
 
 
 def test_a_robot_that_nobody_hears_tries_one_frame_a_second(bench):
-    link = open_serial("sim:circular?body=still")
+    link = open_serial("sim:circular?body=still&node=1")
     began = []
     chip = link.bench.board.can.can
     chip.began, real = lambda: (began.append(link.bench.clock.now_us), real())[1], chip.began
