@@ -1,5 +1,7 @@
 """A robot on a CAN bus: the whole firmware, its controller, the wire, and the host's own line at the other end."""
 
+import json
+
 import pytest
 
 from hil_sim.devices.canframe import Frame
@@ -273,3 +275,17 @@ def test_both_worlds_do_the_same_on_can():
         robot.link.close()
 
     assert traces[0] == traces[1]
+
+
+def test_a_script_runs_over_can_as_it_does_over_the_serial_line(softrig, tmp_path):
+    script = tmp_path / "two.gait"
+    script.write_text("gait 1\nrobot circular\nfire A at 40 % for 300 ms\nfire C at 30 % for 200 ms\n")
+
+    done = softrig("run", str(script), "--robot", f"{STILL}@1", "--json")
+    serial = softrig("run", str(script), "--robot", "sim:circular?body=still", "--json")
+
+    reports = [json.loads(each.out.splitlines()[-1]) for each in (done, serial)]
+    assert [each.status for each in (done, serial)] == [0, 0]
+    by_can, by_serial = (report["observed"]["coil_on_s"] for report in reports)
+    assert by_can == pytest.approx(by_serial, abs=0.01)
+    assert reports[0]["link"]["frames_resent"] == 0
