@@ -289,3 +289,25 @@ def test_a_script_runs_over_can_as_it_does_over_the_serial_line(softrig, tmp_pat
     by_can, by_serial = (report["observed"]["coil_on_s"] for report in reports)
     assert by_can == pytest.approx(by_serial, abs=0.01)
     assert reports[0]["link"]["frames_resent"] == 0
+
+
+def test_robots_that_wait_for_one_word_start_within_one_control_step():
+    bus = CanBus.open("can:softrig:circular,circular?body=still")
+    robots = [Robot(CanLink(bus, node)) for node in (1, 2)]
+    code = program.fire(1, 400, 300) + program.delay(300) + program.halt()
+    for robot in robots:
+        robot.connect()
+        robot.upload(program.header(code, robot.profile.crc), code)
+        robot.arm(lease_ms=2000)
+        robot.ready()
+
+    word = frames.encode(frames.seal(messages.SYNC.number, 0, 0, b"", 0, 0))
+    CanLink(bus, ALL).write(word)
+    list(robots[0].listen(100))
+
+    began_us = [
+        next(us for us, duty in reversed(bus.observers[node].coil("A").history) if 0.3 < duty < 0.5) for node in (1, 2)
+    ]
+    assert abs(began_us[0] - began_us[1]) <= STEP_US
+    for line in list(bus._lines):
+        line.close()
