@@ -20,6 +20,7 @@ ENDED = (messages.FINISHED, messages.ABORTED, messages.TRIP, messages.DISARMED)
 TESTED = (messages.ARM, messages.CALIBRATE)
 TEST_US = 2_000_000  # the longest that a self-test takes between such an order and its answer
 PULSES_US = 20_000  # and all of it that one coil is on
+TALKS_MAX = 32  # sessions that are listened to at once: one read may hold so many greetings
 
 
 class Talk:
@@ -27,8 +28,8 @@ class Talk:
 
     def __init__(self, seed: int, session: int) -> None:
         self.session = session
+        self.open: dict[int, tuple[messages.Message, Claim | None, object, int]] = {}  # and how many claims there were
         self.host, self.robot = Link(seed, device=True), Link(seed)
-        self.orders: list[tuple[Received, int]] = []  # before the robot has answered any
         for link in (self.host, self.robot):
             link.begin(seed, session)
 
@@ -49,41 +50,42 @@ class Ledger:
         """The robot has begun anew: no order holds any more."""
         self._end_all(now_us)
         self._lease_us = 0.0
+        self._test_until_us = 0  # a self-test, which stands before the lease, may last as long
         self._outlives = False
         self._armed_us = now_us
         self._upload = bytearray()
         self._may_outlive = self._doubtful = False
         self._stop = frames.StopFinder()
-        self._talk, self._next = Talk(self._seed, 0), None
-        self._open: dict[int, tuple[messages.Message, Claim | None, object, int]] = {}  # and how many claims there were
+        self._talks = [Talk(self._seed, 0)]  # any of them may be in force: the robot need not have said so yet
+        self._uploader = self._talks[0]
 
     def heard(self, data: bytes, now_us: int) -> None:
         """Take bytes that the firmware has read."""
         if self._stop.feed(data):
             self._end_all(now_us)
         self._reads += 1
-        if self._next is not None:
-            self._next.orders += [(received, now_us) for received in self._next.host.receive(data, self._reads)]
-        for received in self._talk.host.receive(data, self._reads):
-            if received.kind == messages.HELLO.number:
-                self._greeted(received.payload)
-            self._ordered(received, now_us)
-        if self._reads in (self._talk.host.heard_ms, self._next and self._next.host.heard_ms):
+        for talk in self._talks:
+            for received in talk.host.receive(data, self._reads):
+                if received.kind == messages.HELLO.number and talk is self._talks[0]:
+                    self._greeted(received.payload, data.rpartition(b"\x00")[2])
+                self._ordered(talk, received, now_us)
+        if self._reads in [talk.host.heard_ms for talk in self._talks]:
             self._live(now_us)
 
     def told(self, data: bytes, now_us: int) -> None:
         """Take bytes that the firmware has sent."""
-        for received in self._heeded(data):
-            message = messages.by_number(received.kind)
-            if message is None:
-                continue
-            answer = message.unpack(received.payload)
-            if message is messages.EVENT and answer.event in ENDED:
-                self._ended(answer.event, now_us)
-            elif message in (messages.OK, messages.REFUSED) and answer.request in self._open:
-                self._answered(*self._open.pop(answer.request), message is messages.OK, now_us)
+        for talk in self._talks:
+            for received in talk.robot.receive(data, 0):
+                message = messages.by_number(received.kind)
+                if message is None:
+                    continue
+                answer = message.unpack(received.payload)
+                if message is messages.EVENT and answer.event in ENDED:
+                    self._ended(answer.event, now_us)
+                elif message in (messages.OK, messages.REFUSED) and answer.request in talk.open:
+                    self._answered(*talk.open.pop(answer.request), message is messages.OK, now_us)
 
-    def _ordered(self, received: Received, now_us: int) -> None:
+    def _ordered(self, talk: Talk, received: Received, now_us: int) -> None:
         message = messages.by_number(received.kind)
         if message is None or received.kind < frames.GREETINGS_BELOW:
             return
@@ -92,9 +94,7 @@ class Ledger:
         except ValueError:
             return
         claim = None
-        if message is messages.DISARM:
-            self._end_all(now_us)
-        elif message is messages.ARM:
+        if message is messages.ARM:
             claim = self._tested(order.lease_ms, now_us)
         elif message is messages.CALIBRATE:
             claim = self._tested(0, now_us)
@@ -103,43 +103,50 @@ class Ledger:
         elif message is messages.START:
             claim = Claim((1 << 32) - 1, now_us, inf, of_program=True)
         elif message is messages.PROGRAM:
-            self._begin(order.header)
+            self._begin(talk, order.header)
         elif message is messages.CODE:
+            self._doubtful = self._doubtful or talk is not self._uploader
             self._upload[order.offset : order.offset + len(order.code)] = order.code
-        elif message is messages.CANCEL:
-            self._cancel(now_us)
         if claim is not None:
             self._add(claim, now_us)
-        self._open[received.seq] = (message, claim, order, len(self.claims))
+        talk.open[received.seq] = (message, claim, order, len(self.claims))
 
     def _tested(self, lease_ms: int, now_us: int) -> Claim:
         lease_us = 1000 * (lease_ms or self._profile.session.lease_ms)
         self._lease_us = max(self._lease_us, lease_us)
         self._armed_us = now_us
+        self._test_until_us = now_us + TEST_US
         pulses = dict.fromkeys(range(len(self._profile.channels)), PULSES_US)
         return Claim((1 << len(pulses)) - 1, now_us, now_us + TEST_US, pulses)
 
-    def _begin(self, header: bytes) -> None:
-        self._upload, self._doubtful = bytearray(), False
+    def _begin(self, talk: Talk, header: bytes) -> None:
+        self._upload, self._doubtful, self._uploader = bytearray(), False, talk
         try:
             self._may_outlive = bool(program.read_header(header).flags & program.OUTLIVES_HOST)
         except program.BadProgram:
             self._doubtful = True
 
-    def _cancel(self, now_us: int) -> None:
-        for claim in self._current:
+    def _cancel(self, count: int, now_us: int) -> None:
+        for claim in self.claims[:count]:
             if claim.of_program and claim.limited:
                 claim.end(now_us)
 
     def _answered(
         self, message: messages.Message, claim: Claim | None, order: object, count: int, ok: bool, now_us: int
     ) -> None:
+        if message in TESTED and ok:
+            self._test_until_us = 0
         if not ok:
             self._doubtful = self._doubtful or message in (messages.PROGRAM, messages.CODE)
             if claim is not None:
                 claim.end(now_us if message in TESTED else claim.from_us)  # the self-test has been
         elif message is messages.CALIBRATE:
             claim.end(now_us)
+        elif message is messages.DISARM:
+            for older in self.claims[:count]:
+                older.end(now_us)
+        elif message is messages.CANCEL:
+            self._cancel(count, now_us)
         elif message is messages.ARM:
             self._lease_us = 1000.0 * (order.lease_ms or self._profile.session.lease_ms)
         elif message is messages.FIRE:
@@ -168,30 +175,20 @@ class Ledger:
         if event in (messages.TRIP, messages.DISARMED) and now_us - self._armed_us > 500_000:
             self._end_all(now_us)
 
-    def _greeted(self, payload: bytes) -> None:
-        """Listen to a session that may follow, too; the robot shows by its first answer that it does."""
+    def _greeted(self, payload: bytes, begun: bytes) -> None:
+        """Listen to a session that may begin, too, from the frame on that has begun when its hello was read."""
         try:
-            session = messages.HELLO.unpack(payload).session
+            hello = messages.HELLO.unpack(payload)
         except ValueError:
             return
-        if session not in (self._talk.session, self._next and self._next.session):
-            self._next = Talk(self._seed, session)
-
-    def _heeded(self, data: bytes) -> list[Received]:
-        """Return what the robot told those whom it heeds, which is another session from its first word to it on."""
-        told = self._talk.robot.receive(data, 0)
-        answers = [] if self._next is None else self._next.robot.receive(data, 0)
-        if self._next is None or self._next.robot.heard_ms is None:
-            return told
-        self._talk, self._next = self._next, None
-        self._open.clear()
-        for received, now_us in self._talk.orders:
-            self._ordered(received, now_us)
-            self._live(now_us)
-        return answers
+        if hello.version == frames.VERSION and hello.session not in [talk.session for talk in self._talks]:
+            latest = self._talks[1:][1 - TALKS_MAX :]
+            self._talks = [self._talks[0], *latest, Talk(self._seed, hello.session)]
+            self._talks[-1].host.receive(begun, self._reads)
 
     def _live(self, now_us: int) -> None:
-        self.alive.append((now_us, inf if self._outlives else now_us + self._lease_us))
+        until_us = max(now_us + self._lease_us, self._test_until_us)
+        self.alive.append((now_us, inf if self._outlives else until_us))
 
     def _add(self, claim: Claim, now_us: int) -> None:
         self.claims.append(claim)
