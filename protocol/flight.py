@@ -7,7 +7,7 @@ line that keeps the order it is lost then, on any other it comes twice, which th
 
 from protocol.frames import FRAME_MAX
 
-WINDOW = 16  # frames on the way at once
+WINDOW = 32  # frames on the way at once
 BYTES_ANY = 0xFFFF  # a credit that nothing exceeds
 TRIES_MAX = 12
 RTO_FIRST_MS = 250

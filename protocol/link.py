@@ -17,9 +17,9 @@ from protocol import frames, secret
 from protocol.flight import BYTES_ANY, WINDOW, Flight
 from protocol.messages import ALIVE
 
-QUEUE_MAX = 64
-RESERVE = 8  # places of the queue that are kept for answers to what the other end was allowed to send
-ALIVE_BYTES = 5
+QUEUE_MAX = 96
+RESERVE = WINDOW + 8  # places of it that no credit is given for: a window may come on credit that was taken back since
+ALIVE_BYTES = 7
 LAPS = 4  # of its 256 numbers that a posted frame may be ahead when all before it were lost
 _POSTED_LAPS = (0, -1) + tuple(range(1, LAPS))  # in the order of what is likely; -1: it was heard before
 LATE = 16  # a posted frame that seems so much older than the newest is: it was late on its way, or comes twice

@@ -161,7 +161,7 @@ IDENTITY = Message(
     Field("role", "B"),  # What this session may do: only the holder may give orders. [ROLES]
     Field("node", "B"),  # The robot's number on a shared line, 0: none.
     Field("secured", "B"),  # Whether orders must carry tags; with a damaged key there are none. [SECURED]
-    Field("slots", "B"),  # Credit to begin with: frames that may wait for their acknowledgement. [0..16]
+    Field("slots", "B"),  # Credit to begin with: frames that may wait for their acknowledgement. [0..32]
     Field("bytes", "H"),  # Credit to begin with: bytes of them on the line.
     Field("byte_ns", "I"),  # Time of a byte on the line, 0: not known.
     Field("holder", "I"),  # The session that holds the lease, or whose program runs, 0: none.
@@ -201,8 +201,8 @@ SYNC = Message(0x07, "sync")  # To all robots that wait for it: start your progr
 
 ALIVE = Message(
     0x10, "alive",  # Acknowledges in full, gives credit, and renews the lease like any frame of the session.
-    Field("have", "H"),  # Bit i: the frame i + 1 after the next expected one has arrived.
-    Field("slots", "B"),  # How many frames, from the next expected one on, may be on the way. [0..16]
+    Field("have", "I"),  # Bit i: the frame i + 1 after the next expected one has arrived.
+    Field("slots", "B"),  # How many frames, from the next expected one on, may be on the way. [0..32]
     Field("bytes", "H"),  # How many bytes of them.
 )  # fmt: skip
 ARM = Message(

@@ -75,9 +75,9 @@ def test_two_files_of_a_program_may_include_the_header(build, tmp_path):
 def test_a_value_outside_the_range_of_its_field_is_not_packed(build, tmp_path):
     source = tmp_path / "range.c"
     source.write_text(
-        '#include "softrig.h"\nint main(void)\n{\n    softrig_alive told = {0, 16, 0};\n    uint8_t out[5];\n'
-        "    int packed = softrig_pack_alive(&told, out, sizeof out);\n    told.slots = 17;\n"
-        "    return !(packed == 5 && softrig_pack_alive(&told, out, sizeof out) == -1);\n}\n"
+        '#include "softrig.h"\nint main(void)\n{\n    softrig_alive told = {0, 32, 0};\n    uint8_t out[7];\n'
+        "    int packed = softrig_pack_alive(&told, out, sizeof out);\n    told.slots = 33;\n"
+        "    return !(packed == 7 && softrig_pack_alive(&told, out, sizeof out) == -1);\n}\n"
     )
 
     assert said(build(source)) == (0, "")

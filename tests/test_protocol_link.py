@@ -133,7 +133,7 @@ def test_a_full_queue_is_an_error_of_the_caller_and_posts_give_way():
     link.post(TELEMETRY.number, b"")
 
     assert link.room() == 0
-    with pytest.raises(links.LinkFull, match="64 frames"):
+    with pytest.raises(links.LinkFull, match="96 frames"):
         link.send(FIRE.number, b"", 0)
 
 

@@ -34,7 +34,7 @@
 #define SOFTRIG_GREETINGS_BELOW 16u
 #define SOFTRIG_OPEN_FROM 80u
 #define SOFTRIG_OPEN_BELOW 96u
-#define SOFTRIG_WINDOW 16u
+#define SOFTRIG_WINDOW 32u
 #define SOFTRIG_START_AT_ONCE 0u
 #define SOFTRIG_START_AT_SYNC 4294967295u
 #define SOFTRIG_STOP_BYTES 6u
@@ -747,7 +747,7 @@ typedef struct softrig_identity {
     uint8_t role; /* What this session may do: only the holder may give orders. SOFTRIG_ROLES_... */
     uint8_t node; /* The robot's number on a shared line, 0: none. */
     uint8_t secured; /* Whether orders must carry tags; with a damaged key there are none. SOFTRIG_SECURED_... */
-    uint8_t slots; /* Credit to begin with: frames that may wait for their acknowledgement. 0 to 16. */
+    uint8_t slots; /* Credit to begin with: frames that may wait for their acknowledgement. 0 to 32. */
     uint16_t bytes; /* Credit to begin with: bytes of them on the line. */
     uint32_t byte_ns; /* Time of a byte on the line, 0: not known. */
     uint32_t holder; /* The session that holds the lease, or whose program runs, 0: none. */
@@ -761,7 +761,7 @@ typedef struct softrig_identity {
 
 static inline int softrig_pack_identity(const softrig_identity *in, uint8_t *out, size_t room)
 {
-    if (in->firmware.size > SOFTRIG_PAYLOAD_MAX - SOFTRIG_IDENTITY_BYTES || room < SOFTRIG_IDENTITY_BYTES + in->firmware.size || in->slots > 16)
+    if (in->firmware.size > SOFTRIG_PAYLOAD_MAX - SOFTRIG_IDENTITY_BYTES || room < SOFTRIG_IDENTITY_BYTES + in->firmware.size || in->slots > 32)
         return -1;
     softrig_put32(out, in->session);
     softrig_put32(out + 4, in->boot);
@@ -936,20 +936,20 @@ static inline int softrig_unpack_nak(softrig_nak *out, softrig_bytes payload)
 /* It has no payload. */
 
 /* 0x10 alive: Acknowledges in full, gives credit, and renews the lease like any frame of the session. */
-#define SOFTRIG_ALIVE_BYTES 5u
+#define SOFTRIG_ALIVE_BYTES 7u
 typedef struct softrig_alive {
-    uint16_t have; /* Bit i: the frame i + 1 after the next expected one has arrived. */
-    uint8_t slots; /* How many frames, from the next expected one on, may be on the way. 0 to 16. */
+    uint32_t have; /* Bit i: the frame i + 1 after the next expected one has arrived. */
+    uint8_t slots; /* How many frames, from the next expected one on, may be on the way. 0 to 32. */
     uint16_t bytes; /* How many bytes of them. */
 } softrig_alive;
 
 static inline int softrig_pack_alive(const softrig_alive *in, uint8_t *out, size_t room)
 {
-    if (room < SOFTRIG_ALIVE_BYTES || in->slots > 16)
+    if (room < SOFTRIG_ALIVE_BYTES || in->slots > 32)
         return -1;
-    softrig_put16(out, in->have);
-    out[2] = in->slots;
-    softrig_put16(out + 3, in->bytes);
+    softrig_put32(out, in->have);
+    out[4] = in->slots;
+    softrig_put16(out + 5, in->bytes);
     return (int)SOFTRIG_ALIVE_BYTES;
 }
 
@@ -957,9 +957,9 @@ static inline int softrig_unpack_alive(softrig_alive *out, softrig_bytes payload
 {
     if (payload.size != SOFTRIG_ALIVE_BYTES)
         return -1;
-    out->have = softrig_get16(payload.at);
-    out->slots = payload.at[2];
-    out->bytes = softrig_get16(payload.at + 3);
+    out->have = softrig_get32(payload.at);
+    out->slots = payload.at[4];
+    out->bytes = softrig_get16(payload.at + 5);
     return 0;
 }
 

@@ -272,7 +272,7 @@ static void payload_4(void)
     in.role = 255u;
     in.node = 255u;
     in.secured = 255u;
-    in.slots = 16u;
+    in.slots = 32u;
     in.bytes = 65535u;
     in.byte_ns = 4294967295u;
     in.holder = 4294967295u;
@@ -282,7 +282,7 @@ static void payload_4(void)
     in.proof_a = 4294967295u;
     in.proof_b = 4294967295u;
     in.firmware = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
-    hex(&payload, "ffffffffffffffffffffffffffffffffffffffffffffff10ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
+    hex(&payload, "ffffffffffffffffffffffffffffffffffffffffffffff20ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
     check(same(packed.at, softrig_pack_identity(&in, packed.at, HELD_MAX), &payload), "identity 4");
     check(softrig_unpack_identity(&out, view(&payload)) == 0, "identity 4");
     check(out.session == in.session, "identity 4");
@@ -321,7 +321,7 @@ static void payload_5(void)
     in.role = 35u;
     in.node = 145u;
     in.secured = 72u;
-    in.slots = 12u;
+    in.slots = 15u;
     in.bytes = 61458u;
     in.byte_ns = 3874979985u;
     in.holder = 3454992675u;
@@ -331,7 +331,7 @@ static void payload_5(void)
     in.proof_a = 3168727058u;
     in.proof_b = 2042486820u;
     in.firmware = view(hex(&bytes, "00017f80ff0053544f5000"));
-    hex(&payload, "2301efcd12f0debc24e0bd7948c07bf3918024122391480c12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000");
+    hex(&payload, "2301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000");
     check(same(packed.at, softrig_pack_identity(&in, packed.at, HELD_MAX), &payload), "identity 5");
     check(softrig_unpack_identity(&out, view(&payload)) == 0, "identity 5");
     check(out.session == in.session, "identity 5");
@@ -549,7 +549,7 @@ static void payload_18(void)
     in.have = 0u;
     in.slots = 0u;
     in.bytes = 0u;
-    hex(&payload, "0000000000");
+    hex(&payload, "00000000000000");
     check(same(packed.at, softrig_pack_alive(&in, packed.at, HELD_MAX), &payload), "alive 18");
     check(softrig_unpack_alive(&out, view(&payload)) == 0, "alive 18");
     check(out.have == in.have, "alive 18");
@@ -561,10 +561,10 @@ static void payload_19(void)
 {
     static held payload, packed;
     softrig_alive in, out;
-    in.have = 65535u;
-    in.slots = 16u;
+    in.have = 4294967295u;
+    in.slots = 32u;
     in.bytes = 65535u;
-    hex(&payload, "ffff10ffff");
+    hex(&payload, "ffffffff20ffff");
     check(same(packed.at, softrig_pack_alive(&in, packed.at, HELD_MAX), &payload), "alive 19");
     check(softrig_unpack_alive(&out, view(&payload)) == 0, "alive 19");
     check(out.have == in.have, "alive 19");
@@ -576,10 +576,10 @@ static void payload_20(void)
 {
     static held payload, packed;
     softrig_alive in, out;
-    in.have = 291u;
-    in.slots = 7u;
-    in.bytes = 57380u;
-    hex(&payload, "23010724e0");
+    in.have = 3454992675u;
+    in.slots = 24u;
+    in.bytes = 291u;
+    hex(&payload, "2301efcd182301");
     check(same(packed.at, softrig_pack_alive(&in, packed.at, HELD_MAX), &payload), "alive 20");
     check(softrig_unpack_alive(&out, view(&payload)) == 0, "alive 20");
     check(out.have == in.have, "alive 20");
@@ -1715,10 +1715,10 @@ int main(void)
     payload_82();
     payload_83();
     { static const whole told = {0, 1, 0, 0, 0, 0u, 0u, 0, "", "239180f7e62301efcd12f0debc24e0bd79", "20010000239180f7e62301efcd12f0debc24e0bd7992d7a9ee", "0320010116239180f7e62301efcd12f0debc24e0bd7992d7a9ee00"}; frame(&told, "hello"); }
-    { static const whole told = {0, 2, 0, 0, 0, 0u, 0u, 1, "", "2301efcd12f0debc24e0bd7948c07bf3918024122391480c12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000", "200200002301efcd12f0debc24e0bd7948c07bf3918024122391480c12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000ba1ec656", "03200201352301efcd12f0debc24e0bd7948c07bf3918024122391480c12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7905017f80ff0553544f5005ba1ec65600"}; frame(&told, "identity"); }
-    { static const whole told = {2, 2, 0, 0, 9, 0u, 0u, 1, "", "2301efcd12f0debc24e0bd7948c07bf3918024122391480c12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000", "22020000092301efcd12f0debc24e0bd7948c07bf3918024122391480c12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000cbec1049", "0322020136092301efcd12f0debc24e0bd7948c07bf3918024122391480c12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7905017f80ff0553544f5005cbec104900"}; frame(&told, "identity"); }
+    { static const whole told = {0, 2, 0, 0, 0, 0u, 0u, 1, "", "2301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000", "200200002301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f500032ae7a7c", "03200201352301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7905017f80ff0553544f500532ae7a7c00"}; frame(&told, "identity"); }
+    { static const whole told = {2, 2, 0, 0, 9, 0u, 0u, 1, "", "2301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000", "22020000092301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000435cac63", "0322020136092301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7905017f80ff0553544f5005435cac6300"}; frame(&told, "identity"); }
     { static const whole told = {0, 7, 0, 0, 0, 0u, 0u, 0, "", "", "20070000a7663984", "0320070105a766398400"}; frame(&told, "sync"); }
-    { static const whole told = {0, 16, 200, 7, 0, 894227724u, 200u, 0, "", "23010724e0", "2010c80723010724e0e76311ef", "0e2010c80723010724e0e76311ef00"}; frame(&told, "alive"); }
+    { static const whole told = {0, 16, 200, 7, 0, 894227724u, 200u, 0, "", "2301efcd182301", "2010c8072301efcd182301144ff745", "102010c8072301efcd182301144ff74500"}; frame(&told, "alive"); }
     { static const whole told = {1, 18, 0, 0, 0, 894227724u, 0u, 0, "", "", "2112000010ec83ed", "032112010510ec83ed00"}; frame(&told, "disarm"); }
     { static const whole told = {1, 20, 3, 255, 0, 894227724u, 3u, 0, "", "2301efcd72039180", "211403ff2301efcd720391803b3fbfbe", "11211403ff2301efcd720391803b3fbfbe00"}; frame(&told, "fire"); }
     { static const whole told = {3, 20, 255, 0, 126, 894227724u, 255u, 0, "", "2301efcd72039180", "2314ff007e2301efcd720391808d002241", "042314ff0b7e2301efcd720391808d03224100"}; frame(&told, "fire"); }
@@ -1777,7 +1777,7 @@ int main(void)
     segments(142871560u, 33, 3, 1, 0, 0, "202101020000010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101440f303a", "088020210102000001080101010101010101080201010101010101080301010101010101080401010101010101080501010101010101080601010101010101080701010101010101080801010101010101080901010101010101080a01010101010101080b01010101010101080c01010101010101080d01010101010101080e01010101010101080f01010101010101081001010101010101081101010101010101081201010101010101081301010101010101081401010101010101081501010101010101081601010101010101081701010101010101081801010101010101081901010101010101081a01010101010101081b01010101010101081c01010101010101081d01010101010101081e01010101010101081f0101010101010108200101010101010108210101010101010107620101440f303a", "CAN code");
     segments(142871560u, 33, 3, 1, 0, 1, "202101020000010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101440f303a", "4080f4202101020000010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010140010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101014002010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101404301010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101440f303a00000000000000", "CAN code");
     segments(423761912u, 80, 5, 127, 1, 0, "2050010203914824e0bd7900017f80ff0053544f50003a1ab1d5", "088020500102039148080124e0bd7900017f080280ff0053544f500643003a1ab1d5", "CAN telemetry");
-    segments(269095992u, 2, 5, 7, 1, 1, "200201022301efcd12f0debc24e0bd7948c07bf3918024122391480c12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f500037113713", "408047200201022301efcd12f0debc24e0bd7948c07bf3918024122391480c12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff000c4153544f5000371137130000", "CAN identity");
+    segments(269095992u, 2, 5, 7, 1, 1, "200201022301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000bfa18b39", "408047200201022301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff000c4153544f5000bfa18b390000", "CAN identity");
     segments(202774520u, 5, 5, 127, 1, 0, "2005010223918024e0bd7948c07bf3e7b320b6", "088020050102239180080124e0bd7948c07b0642f3e7b320b6", "CAN stopped");
     segments(69073928u, 7, 127, 1, 0, 0, "20070102ca362c73", "088020070102ca362c024173", "CAN sync");
     key("000102030405060708090a0b0c0d0e0f101112131415161718191a1b1c1d1e1f", "0278563412000000000403020108070605", 2711790500u, 2779162536u, 3237998146u, "d6ed30e4cc2152c40d9dbbcb4fe56153db2fd42554bf2abf82b5c5c187299ab2", 1322359566u, 1529411322u, "251403ff2301efcd72039180", 259u, "f7a1b0eb22573f9a");

@@ -27,10 +27,11 @@ WATCHDOG_MS = 200
 WRITING_MS = 2000  # the flash erases a sector in 45 ms, at worst in 400 ms (W25Q16JV), and a file may take two
 BAUD = 115_200  # to begin with, see rates.py
 BUFFER_BYTES = 512
+HEARD_BYTES = 1024  # of the receive buffer: what a host with full credit sends while a step is late fits in
 CRYSTAL_HZ = 8_000_000  # of the MCP2515
 SPI_HZ = 8_000_000
 QUIET_US, BUSY_US = 500, 200  # between two looks at the CAN bus; the second while frames wait to be sent
-CREDIT_BYTES = 448  # of unacknowledged frames; what is acknowledged to nobody, as a hello, needs the rest
+CREDIT_BYTES = 960  # of unacknowledged frames; what is acknowledged to nobody, as a hello, needs the rest
 
 
 class Board:
@@ -127,7 +128,7 @@ class Board:
         self.byte_ns = 10 * 1_000_000_000 // baud
         self.noise = 0  # bytes that have arrived since somebody last set it to 0
         self._cut = b"\x00"  # ends what had arrived of a frame
-        self._uart = UART(0, baudrate=baud, tx=Pin(TX), rx=Pin(RX), txbuf=BUFFER_BYTES, rxbuf=BUFFER_BYTES)
+        self._uart = UART(0, baudrate=baud, tx=Pin(TX), rx=Pin(RX), txbuf=BUFFER_BYTES, rxbuf=HEARD_BYTES)
         self._quiet_ms = time.ticks_ms()  # when the line will have sent all that was written
 
     def read(self) -> bytes:
