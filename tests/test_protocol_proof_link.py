@@ -88,7 +88,7 @@ class TwoEnds(RuleBasedStateMachine):
             self.ends.clear_up()
 
 
-TwoEnds.TestCase.settings = settings(max_examples=25, stateful_step_count=30, deadline=None)
+TwoEnds.TestCase.settings = settings(max_examples=80, stateful_step_count=40, deadline=None)
 TestTwoEnds = TwoEnds.TestCase
 
 
@@ -108,6 +108,40 @@ def test_thousands_of_orders_go_both_ways_exactly_once_while_numbers_wrap(node, 
     assert ends.host.session == 1
     assert (ends.taken[1], ends.host.got) == (ends.host.said, ends.said[1])
     assert ends.robot.resent + ends.host.link.resent < 1.5 * (ends.taken[1] + ends.host.got)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_sessions_that_change_all_the_time_never_mix(seed):
+    """Each gives a few orders, and goes on sending them while the next one begins."""
+    ends = Ends(seed, SHARE, keyed=seed % 2 == 1)
+
+    for _ in range(60):
+        ends.robot.may_adopt = ends.chance.random() < 0.8
+        ends.new_session()
+        for _ in range(ends.chance.randrange(1, 12)):
+            ends.host_says(ends.chance.randrange(3))
+            ends.robot_says(ends.chance.randrange(3))
+            ends.run(30)
+        ends.replay(ends.chance.randrange(30))
+    ends.clear_up()
+
+    assert len(ends.taken) > 10
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_queues_that_fill_at_both_ends_are_empty_soon_after_the_line_is_good(seed):
+    ends = Ends(seed, SHARE, keyed=seed % 2 == 1)
+
+    for _ in range(10):
+        for _ in range(10):
+            ends.host_says(QUEUE_MAX)
+            ends.robot_says(QUEUE_MAX)
+            ends.run(20)
+        share = ends.there.share
+        assert ends.clear_up() < 1500
+        ends.there.share = ends.back.share = share
+
+    assert ends.host.session == 1
 
 
 def test_of_what_was_recorded_in_a_session_with_tags_nothing_is_taken_again():

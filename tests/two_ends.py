@@ -93,7 +93,8 @@ class Ends:
         self.host = Host(1, node)
 
     def new_session(self) -> None:
-        """Let another host come; the one before goes on for itself."""
+        """Let another host come; the one before goes on for itself, with a few last orders."""
+        self.host_says(6)
         self.former, self.host = self.host, Host(self.host.session + 1, self._node)
 
     def host_says(self, count: int) -> None:
@@ -114,7 +115,8 @@ class Ends:
         for line in (self.there, self.back):
             lines = [frame for frame in line.heard if self._keyed or not self._is_of(frame, self.robot.session)]
             if lines:
-                line._rest += b"".join(self.chance.choices(lines, k=count))
+                begin = self.chance.randrange(len(lines))
+                line._rest += b"".join(lines[begin : begin + count])
 
     def run(self, ms: int) -> None:
         """Let time pass."""
@@ -133,8 +135,9 @@ class Ends:
                     self._host_hears(host, data)
             self.stay_bounded()
 
-    def clear_up(self) -> None:
-        """Make the line good and wait until all has arrived: in bounded time, and what was said is what came."""
+    def clear_up(self) -> int:
+        """Make the line good and wait until all has arrived: what was said is what came. Return how long it took."""
+        begun_ms = self.now_ms
         self.robot.may_adopt = True
         self.former = None
         for line in (self.there, self.back):
@@ -143,6 +146,7 @@ class Ends:
         while not self._done():
             assert self.now_ms < until_ms, self.story()
             self.run(STEP_MS)
+        return self.now_ms - begun_ms
 
     def stay_bounded(self) -> None:
         """Assert that nothing has grown beyond its bound."""
@@ -187,6 +191,7 @@ class Ends:
         before = self.robot.session
         delivered = self.robot.receive(data, self.now_ms)
         if self.robot.session != before:
+            assert self.robot.may_adopt
             self._begun += 1
         for received in delivered:
             if received.kind == HELLO.number:
