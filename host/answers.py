@@ -1,7 +1,7 @@
 """Orders that wait for the robot's answer, and the answers, decoded.
 
 answers = Answers()
-answers.expect(seq, Asked("status_request", now_ms))
+answers.expect(seq, Asked("status_request", now_ms, {}, keeper.told_ms))
 taken = answers.take(kind, payload, labels, now_ms)
 answers.said[seq]
 """
@@ -32,6 +32,7 @@ class Asked(NamedTuple):
     name: str
     at_ms: int
     values: dict[str, Any]
+    told_ms: int | None  # the latest that the robot's clock had told then
 
 
 class Taken(NamedTuple):

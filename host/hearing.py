@@ -20,7 +20,7 @@ from host.recognition import changed, restarted
 from host.records import Record, Status, Telemetry, event_of, state_name, stopped_of
 from host.selections import Selections, selection_of
 from host.silence import Silence
-from host.timekeeper import LATE_MS, SLACK_MS, Timekeeper
+from host.timekeeper import LATE_MS, SLACK_MS, Origin, Timekeeper
 from protocol import frames, messages
 
 
@@ -39,7 +39,7 @@ class Hearing:
         self.help: Pages | None = None  # the help texts, once somebody wants to read them
         self.told_ms: int | None = None  # when telemetry came last
         self.trouble: SoftrigError | None = None
-        self.greeted_ms: int | None = None  # the first hello to an open session that is not answered
+        self._greeted: Origin | None = None  # of the answer to the first hello to an open session that is unanswered
         self.damaged = 0  # frames whose payload did not fit their message
 
     @property
@@ -55,6 +55,10 @@ class Hearing:
     def overdue_ms(self) -> int:
         """Return for how long the robot has owed an answer or telemetry."""
         return self.silence.silent_ms(self.answers.oldest())
+
+    def greets(self, now_ms: int) -> None:
+        """Note that hello is said again; the first that is not answered counts."""
+        self._greeted = self._greeted or self.keeper.made_after(now_ms, SLACK_MS)
 
     def missed(self) -> int:
         """Return how many records of telemetry did not come."""
@@ -96,7 +100,7 @@ class Hearing:
         if kind == messages.STOPPED.number:
             stopped = stopped_of(payload, self.labels, now_ms)
             self.stopped, self.holds_lease = True, False
-            self._compare(stopped.now_ms, self.silence.read_ms, LATE_MS, stopped.state, now_us, len(payload))
+            self._compare(stopped.now_ms, self._lately(), stopped.state, now_us, len(payload))
             return stopped
         told = self.selections.take(payload, self.labels, now_ms)
         if told is None:
@@ -105,7 +109,7 @@ class Hearing:
         self.silence.heard(now_ms)
         self.last = told if isinstance(told, Telemetry) else self.last
         state = told.state if isinstance(told, Telemetry) else str(told.values.get("state", ""))
-        self._compare(told.now_ms, self.silence.read_ms, LATE_MS, state, now_us, len(payload))
+        self._compare(told.now_ms, self._lately(), state, now_us, len(payload))
         return told
 
     def _answered(self, kind: int, payload: bytes, now_us: int) -> None:
@@ -115,9 +119,10 @@ class Hearing:
             return
         name, values = taken.asked.name, taken.asked.values
         if isinstance(taken.answer, Status):
-            status = taken.answer
-            self._compare(status.uptime_ms, taken.asked.at_ms, SLACK_MS, status.state, now_us, len(payload))
-            self.keeper.clock.answered(taken.asked.at_ms, status.uptime_ms)
+            status, asked = taken.answer, taken.asked
+            origin = Origin(asked.at_ms, asked.told_ms, SLACK_MS)
+            self._compare(status.uptime_ms, origin, status.state, now_us, len(payload))
+            self.keeper.clock.answered(asked.at_ms, status.uptime_ms)
         elif taken.answer is None and name == messages.ARM.name:
             self.holds_lease = True
         elif taken.answer is None and name == messages.SUBSCRIBE.name:
@@ -141,20 +146,23 @@ class Hearing:
         handshake.take(kind, payload, now_us // 1000)
         if stranger and handshake.identity is not None:
             self.keeper.byte_ns = handshake.identity.byte_ns
-            self.keeper.clock.answered(handshake.begun_ms, handshake.identity.uptime_ms)
-            self.keeper.told(handshake.identity.uptime_ms, None, now_us, len(payload))
+            self.keeper.introduced(handshake.begun_ms, handshake.identity.uptime_ms, now_us, len(payload))
 
     def _recognised(self, identity: Any, now_us: int, payload_bytes: int) -> None:
         """Take the answer to the probe of a silent line."""
         if identity.session != self.handshake.identity.session:
             return
         self.trouble = self.trouble or changed(self.handshake.identity, identity)
-        if self.greeted_ms is not None:
-            state = state_name(identity.state)
-            self._compare(identity.uptime_ms, self.greeted_ms, SLACK_MS, state, now_us, payload_bytes)
-        self.greeted_ms = None
+        greeted, self._greeted = self._greeted, None
+        if greeted is not None:
+            self._compare(identity.uptime_ms, greeted, state_name(identity.state), now_us, payload_bytes)
+            self.keeper.introduced(greeted.host_ms, identity.uptime_ms, now_us, payload_bytes)
 
-    def _compare(self, robot_ms: int, made_ms: int, slack_ms: int, state: str, now_us: int, payload_bytes: int) -> None:
-        """Take a robot time told after the host's `made_ms`; one before that is of a clock that has begun anew."""
-        if self.keeper.told(robot_ms, self.keeper.made_after(made_ms, slack_ms), now_us, payload_bytes):
+    def _lately(self) -> Origin:
+        """Return the origin of what the robot says by itself: the line was empty when it was read before."""
+        return self.keeper.made_after(self.silence.read_ms, LATE_MS)
+
+    def _compare(self, robot_ms: int, origin: Origin, state: str, now_us: int, payload_bytes: int) -> None:
+        """Take a robot time; one that is before what was told is of a clock that has begun anew."""
+        if self.keeper.told(robot_ms, origin, now_us, payload_bytes):
             self.trouble = self.trouble or restarted(state)

@@ -3,8 +3,10 @@
 A robot time that has arrived was told earlier: the robot's clock is at least that far now. A robot time told in answer
 to a question was read after the question left: the clock was at most that far then. Every line through both kinds of
 bounds that drifts by 500 ppm or less is possible; `earliest` is the least of them, `at` the middle, `bound_ms` half of
-what lies between. Robot times are 32 bits and wrap; they are whole milliseconds, so one rounded down stands for any
-time of the next millisecond.
+what lies between. Bounds that no such line goes through are those of a clock that jumped, stood still or runs at
+another speed, as that of a bench on a busy machine may: then the newest counts, and nothing is called known until the
+clock has kept its pace for a while. Robot times are 32 bits and wrap; they are whole milliseconds, so one rounded down
+stands for any time of the next millisecond.
 
     clock.read(telemetry.now_ms, now_ms)
     clock.answered(asked_ms, reply.received_ms)
@@ -13,6 +15,7 @@ time of the next millisecond.
 
 from __future__ import annotations
 
+from math import inf
 from typing import NamedTuple
 
 from host.clockbounds import Bound, Lines
@@ -20,6 +23,7 @@ from host.clockbounds import Bound, Lines
 WRAP = 1 << 32
 TICK_MS = 1.0  # a time of the robot is rounded down to it
 READ_MS = 0.2  # ASSUMED: from the robot's look at its clock until it has read the bytes that wait
+SETTLE_MS = 2000  # without a contradiction, before anything is known of the clock: four answers
 STRETCH_MS = 5000  # of these, only the last bound of each kind is kept
 STRETCHES = 24
 
@@ -38,6 +42,7 @@ class RobotClock:
     def __init__(self) -> None:
         self._bounds: dict[int, list[Bound]] = {1: [], -1: []}  # by side, oldest first
         self._lines: Lines | None = None
+        self._contradicted_ms = -inf
 
     def read(self, robot_ms: int, now_ms: float, line_ms: float = 0.0) -> None:
         """Take a robot time that had arrived by the host's `now_ms`, after at least `line_ms` on the line."""
@@ -57,8 +62,10 @@ class RobotClock:
         return None if self._lines is None else int(now_ms + self._lines.ahead_ms(now_ms)[0]) % WRAP
 
     def figures(self, now_ms: float) -> ClockFigures | None:
-        """Return offset, drift and bound at the host's `now_ms`, or None before there is a bound on either side."""
+        """Return offset, drift and bound at the host's `now_ms`, or None before bounds on both sides agree."""
         if self._lines is None or not (self._bounds[1] and self._bounds[-1]):
+            return None
+        if now_ms - self._contradicted_ms < SETTLE_MS:
             return None
         low_ms, high_ms = self._lines.ahead_ms(now_ms)
         return ClockFigures((low_ms + high_ms) / 2, self._lines.drift_ppm(), (high_ms - low_ms) / 2)
@@ -88,6 +95,8 @@ class RobotClock:
         del side[:-STRETCHES]
         newest_first = sorted(self._bounds[1] + self._bounds[-1], key=lambda each: -each.now_ms)
         self._lines, agreeing = Lines.through(bound, newest_first)
+        if len(agreeing) < len(newest_first):
+            self._contradicted_ms = bound.now_ms
         self._bounds = {sign: [each for each in reversed(agreeing) if each.side == sign] for sign in (1, -1)}
 
 

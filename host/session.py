@@ -88,7 +88,7 @@ class Session:
         seq: int = self._link.send(message.number, payload, now_us // 1000)
         if message is messages.SUBSCRIBE:
             self.hearing.selections.ask(seq, selection_of(values))
-        self.hearing.answers.expect(seq, Asked(message.name, now_us // 1000, values))
+        self.hearing.answers.expect(seq, Asked(message.name, now_us // 1000, values, self.hearing.keeper.told_ms))
         return seq
 
     def read_help(self) -> Pages:
@@ -145,7 +145,7 @@ class Session:
     def wake_us(self, now_us: int) -> int:
         """Return when `poll` must be called again at the latest, if nothing arrives before."""
         hearing = self.hearing
-        owed = hearing.silence.expects or hearing.answers.oldest() is not None
+        owed = hearing.silence.expects or hearing.keeper.doubts or hearing.answers.oldest() is not None
         due = [now_us + (TICK_US if owed else IDLE_TICK_US)]
         if self._stopping.due_us is not None:
             due.append(self._stopping.due_us)
@@ -223,7 +223,7 @@ class Session:
         return bytes(self._link.poll(now_ms))
 
     def _check(self, now_ms: int) -> None:
-        """Raise what became of the session; ask a robot that has fallen silent whether it is still there."""
+        """Raise what became of the session; ask a robot that is silent or that is in doubt who it is."""
         hearing, silence = self.hearing, self.hearing.silence
         if hearing.trouble:
             raise hearing.trouble
@@ -232,6 +232,6 @@ class Session:
         if how:
             figures = ", ".join(f"{name} {value}" for name, value in self.statistics(1000 * now_ms).items())
             raise LinkLost(f"the robot {how} ({figures}); it switches its coils off by itself")
-        if silence.probes(now_ms, oldest):
-            hearing.greeted_ms = now_ms if hearing.greeted_ms is None else hearing.greeted_ms
+        if silence.probes(now_ms, oldest, hearing.keeper.doubts):
+            hearing.greets(now_ms)
             self._link.post(messages.HELLO.number, self._opening.payload())

@@ -56,10 +56,10 @@ class Silence:
             return f"has not answered {oldest.name} for {ANSWER_MS // 1000} s"
         return None
 
-    def probes(self, now_ms: int, oldest: Asked | None) -> bool:
-        """Return whether the robot is to be asked now who it is."""
+    def probes(self, now_ms: int, oldest: Asked | None, doubts: bool) -> bool:
+        """Return whether the robot is to be asked now who it is: because it is silent, or because of these doubts."""
         missing_ms = max(self._waited_ms(oldest), self.silent_ms(oldest))
-        if missing_ms < PROBE_MS or now_ms - self._probed_ms < PROBE_MS:
+        if (missing_ms < PROBE_MS and not doubts) or now_ms - self._probed_ms < PROBE_MS:
             return False
         self._probed_ms = now_ms
         return True

@@ -132,6 +132,36 @@ def test_a_clock_that_jumps_is_believed_anew():
     assert off_ms < 2
 
 
+@pytest.mark.parametrize("stall_ms", [30, 300, 2000])
+def test_a_clock_that_stood_still_is_known_again_after_five_seconds(stall_ms):
+    pair = Pair(8, 20)
+    list(pair.listen(minutes=1))
+
+    pair.ahead_ms -= stall_ms
+    list(pair.listen(minutes=1 / 12))
+
+    assert all(off_ms <= figures.bound_ms for figures, off_ms in pair.listen(minutes=1))
+    assert pair.clock.figures(pair.now_ms).bound_ms < 2
+
+
+@pytest.mark.parametrize("speed", [0.5, 2, 100])
+def test_of_a_clock_at_another_speed_nothing_is_called_known(speed):
+    """As that of `softrig sim --speed 2`."""
+    pair = Pair(9, (speed - 1) * 1e6)
+    list(pair.listen(minutes=1 / 60))
+
+    told = list(pair.listen(minutes=1))
+
+    assert all(off_ms <= figures.bound_ms for figures, off_ms in told)
+
+
+def test_a_clock_at_another_speed_is_still_reckoned_by_what_it_told_last():
+    pair = Pair(10, 1e6)
+    list(pair.listen(minutes=1))
+
+    assert pair.clock.at(pair.now_ms) == pytest.approx(pair.robot_ms(pair.now_ms) % WRAP, abs=150)
+
+
 def test_what_is_kept_is_bounded():
     pair = Pair(7, 30, jitter_ms=50)
 
