@@ -49,7 +49,7 @@ def test_help_lists_every_command_with_what_it_does(shown):
 
 
 def test_commands_of_other_packages_are_listed_with_their_own_words(shown):
-    assert "sim Run a robot on the bench" in " ".join(shown.split())
+    assert "sim Run robots on the bench" in " ".join(shown.split())
     assert "robots List the robots" in " ".join(shown.split())
 
 
