@@ -17,13 +17,15 @@ from host.canaddress import CanAddress, first_line, open_bus, parse
 from host.canlane import Lane
 from host.errors import LinkLost, SoftrigError
 from host.link import monotonic_s, pause_until
-from protocol.canbus import ALL, FROM_ROBOT, Assembler, CanFrame
+from protocol.canbus import ALL, FROM_ROBOT, Assembler, CanFrame, kind_of
+from protocol.messages import TELEMETRY
 
 if TYPE_CHECKING:
     from can import BusABC, Message
 
 FLUSH_S = 0.5
 SEND_S = 2.0
+CAUGHT_MAX = 4096  # frames
 TICK_S = 1e-6  # of a clock of microseconds: a wait that is shorter might not end
 OFF_S = 1.0  # that an adapter may be bus-off; most come back by themselves
 BUS_OFF = 0x40  # class of an error frame, as Linux numbers them
@@ -77,8 +79,8 @@ class CanBus:
         """Look whether a frame is one that was sent before."""
         self._lanes.setdefault(lane, Lane()).notice(stuffed)
 
-    def turn(self, until_s: float) -> None:
-        """Send what is due and wait for one frame, at most until then."""
+    def turn(self, until_s: float) -> bool:
+        """Send what is due and wait for one frame, at most until then; return whether one has come."""
         next_s = self._flush()
         now_s = self.now_s()
         if self._off_s is not None and now_s - self._off_s >= OFF_S:
@@ -89,6 +91,13 @@ class CanBus:
             raise self._broken(first_line(error)) from error
         if message is not None:
             self._take(message)
+        return message is not None
+
+    def catch_up(self) -> None:
+        """Take all that has come by now, unless it comes faster than it is taken."""
+        for _ in range(CAUGHT_MAX):
+            if not self.turn(self.now_s()):
+                return
 
     def leave(self, line: Line) -> None:
         """Forget a line; with the last one the bus is closed, once all has been sent."""
@@ -143,7 +152,7 @@ class CanBus:
             return
         robot = number >> 10 & 127
         self.heard.add(robot)
-        if host not in (ALL, self.address.host):
+        if host not in (ALL, self.address.host) and kind_of(number) != TELEMETRY.number:  # which is for everybody
             return
         assembler = self._assemblers.setdefault(robot, Assembler(True))
         taken = assembler.feed(number, True, bytes(message.data), round(self.now_s() * 1000), message.is_fd)

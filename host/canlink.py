@@ -65,8 +65,12 @@ class CanLink:
                 self.bus.send(frame, self.node)
 
     def read(self, until_s: float) -> bytes:
-        """Return what a robot has said, or b"" at `until_s`; LinkLost when the bus is gone."""
+        """Return all that a robot has said by now, or b"" at `until_s`; LinkLost when the bus is gone.
+
+        All, because a host that was held up would else take what it reads next for newer than it is.
+        """
         while True:
+            self.bus.catch_up()
             if self._offers and self.now_s() + TICK_S > self._settled_s:
                 self._settle()
             if self._inbox:

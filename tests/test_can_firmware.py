@@ -2,14 +2,17 @@
 
 import json
 
+import can
 import pytest
 
 from hil_sim.devices.canframe import Frame
 from hil_sim.devices.canstation import CanStation
 from hil_sim.link import open_link as open_serial
+from host.canaddress import parse
 from host.canbus import CanBus
 from host.canlink import CanLink
 from host.errors import LinkLost, Silent
+from host.records import Telemetry
 from host.robot import Robot
 from protocol import frames, messages, program
 from protocol.canbus import ALL, GAP_MS, HOST, WAKE_MS, Assembler, Segmenter, identifier
@@ -251,6 +254,21 @@ def test_two_hosts_at_one_robot_get_their_own_answers(robot, bench):
     to_us = [body.kind for body in bodies if body and body.host == 7]
     assert to_us == [messages.IDENTITY.number]
     assert HOST in {body.host for body in bodies if body}
+    assert robot.status().state == "armed"
+
+
+def test_another_host_on_the_bus_may_not_order_and_sees_the_telemetry_of_the_first(robot, bus):
+    robot.arm(lease_ms=5000)
+    robot.subscribe(20)
+    theirs = CanBus(can.Bus(interface="softrig", desk=bus._bus.desk), parse("can:softrig:circular@1?host=2"))
+    other = Robot(CanLink(theirs, 1))
+    other.connect(watch_only=True)
+
+    told = [record for record in other.listen(500) if isinstance(record, Telemetry)]
+    other.link.close()
+
+    assert other.talk.session.viewer
+    assert len(told) in range(23, 28)
     assert robot.status().state == "armed"
 
 
