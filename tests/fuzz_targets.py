@@ -121,7 +121,7 @@ def canbus(data: bytes) -> None:
         elif waiting:
             waiting.pop(0)
         assert len(assembler._under_way) <= UNDER_WAY_MAX
-        assert all(each.length <= frames.BODY_MAX + 1 for each in assembler._under_way)
+        assert all(each.length < frames.BODY_MAX + FD for each in assembler._under_way)
         assert len(segmenter._tail) <= frames.BODY_MAX + 1
 
 
