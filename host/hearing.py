@@ -29,6 +29,8 @@ class Hearing:
 
     def __init__(self, handshake: Handshake, now_us: int) -> None:
         self.handshake = handshake
+        self.profile: Profile | None = None  # the robot's, once it is known
+        self.labels: tuple[str, ...] = ()  # of its coils
         self.answers = Answers()
         self.keeper = Timekeeper()
         self.silence = Silence(now_us // 1000)
@@ -41,16 +43,6 @@ class Hearing:
         self.trouble: SoftrigError | None = None
         self._greeted: Origin | None = None  # of the answer to the first hello to an open session that is unanswered
         self.damaged = 0  # frames whose payload did not fit their message
-
-    @property
-    def profile(self) -> Profile | None:
-        """Return the robot's profile, or None before it is known."""
-        return self.handshake.profile
-
-    @property
-    def labels(self) -> tuple[str, ...]:
-        """Return the labels of the robot's coils, none before it is known."""
-        return self.profile.labels if self.profile else ()
 
     def overdue_ms(self) -> int:
         """Return for how long the robot has owed an answer or telemetry."""
@@ -144,6 +136,8 @@ class Hearing:
             return
         stranger = handshake.identity is None
         handshake.take(kind, payload, now_us // 1000)
+        if handshake.profile:
+            self.profile, self.labels = handshake.profile, handshake.profile.labels
         if stranger and handshake.identity is not None:
             self.keeper.byte_ns = handshake.identity.byte_ns
             self.keeper.introduced(handshake.begun_ms, handshake.identity.uptime_ms, now_us, len(payload))

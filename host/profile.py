@@ -13,6 +13,7 @@ import json
 from binascii import crc32
 from collections.abc import Iterable
 from dataclasses import MISSING, dataclass, fields
+from functools import cached_property
 from typing import Any, TypeVar
 
 from host.errors import BadRequest, Mismatch
@@ -80,7 +81,7 @@ class ProgramLimits:
     guards_max: int = program.GUARDS_MAX
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Profile:
     """A robot: its channels in the order of the bit masks, its groups and its limits."""
 
@@ -95,7 +96,7 @@ class Profile:
     crc: int
     imu: dict[str, int] | None = None  # address of the attitude sensor, where there is one
 
-    @property
+    @cached_property
     def labels(self) -> tuple[str, ...]:
         """Return the labels of all channels, in the order of the masks."""
         return tuple(channel.label for channel in self.channels)

@@ -39,8 +39,10 @@ class Session:
         self._key = key
         self._handshake = Handshake(opening, now_us // 1000, known or Unknown())
         self.hearing = Hearing(self._handshake, now_us)
+        self.open = False  # the robot is known, and orders may be given
+        self.viewer = False  # another session holds the lease, so that this one may watch and stop only
+        self.mute = False  # the robot would not listen to anything but a stop: it has a key, or another holder
         self._link = Link()
-        self._begun = False
         self._stopping = Stopping()
         self._written_us = now_us
         self._bytes_in = self._bytes_out = self._damaged_before = 0
@@ -49,11 +51,6 @@ class Session:
     def number(self) -> int:
         """Return what names the session; the robot keeps it apart from others by it."""
         return self._opening.session
-
-    @property
-    def open(self) -> bool:
-        """Return whether the robot is known, and orders may be given."""
-        return self.hearing.profile is not None
 
     @property
     def identity(self) -> Any:
@@ -65,22 +62,10 @@ class Session:
         """Return the text that the robot gave of itself."""
         return self._handshake.dictionary
 
-    @property
-    def viewer(self) -> bool:
-        """Return whether another session holds the lease, so that this one may watch and stop only."""
-        return self.open and self.identity.role == messages.VIEWER
-
-    @property
-    def mute(self) -> bool:
-        """Return whether the robot would not listen to anything but a stop: viewers, and hosts without its key."""
-        return self.open and (self.viewer or not may_order(self._key, self.identity))
-
     def request(self, message: messages.Message, now_us: int, **values: Any) -> int:
         """Queue an order and return its number, under which `hearing.answers` will hold what the robot said."""
-        if self.viewer:
-            raise Refused(message.name, codes.LEASE_HELD)
         if self.mute:
-            raise keyless(message.name)
+            raise Refused(message.name, codes.LEASE_HELD) if self.viewer else keyless(message.name)
         try:
             payload = message.pack(**values)
         except ValueError as error:
@@ -111,17 +96,18 @@ class Session:
 
     def receive(self, data: bytes, now_us: int) -> list[Record]:
         """Take what a read of the line gave, even if that is nothing; return the records it completed."""
+        hearing, now_ms = self.hearing, now_us // 1000
         self._bytes_in += len(data)
         records = []
-        for received in self._link.receive(data, now_us // 1000):
-            record = self.hearing.take(received.kind, received.payload, now_us)
+        for received in self._link.receive(data, now_ms):
+            record = hearing.take(received.kind, received.payload, now_us)
             if record is not None:
                 records.append(record)
-        self.hearing.silence.heard(self._link.heard_ms)
-        self.hearing.silence.read_ms = now_us // 1000
-        if self.hearing.stopped:
+        hearing.silence.heard(self._link.heard_ms)
+        hearing.silence.read_ms = now_ms
+        if hearing.stopped:
             self.end_stop()
-        if self.open and not self._begun:
+        if not self.open and hearing.profile is not None:
             self._begin()
         return records
 
@@ -144,23 +130,23 @@ class Session:
 
     def wake_us(self, now_us: int) -> int:
         """Return when `poll` must be called again at the latest, if nothing arrives before."""
-        hearing = self.hearing
+        hearing, now_ms = self.hearing, now_us // 1000
         owed = hearing.silence.expects or hearing.keeper.doubts or hearing.answers.oldest() is not None
-        due = [now_us + (TICK_US if owed else IDLE_TICK_US)]
+        due_us = now_us + (TICK_US if owed else IDLE_TICK_US)
         if self._stopping.due_us is not None:
-            due.append(self._stopping.due_us)
+            due_us = min(due_us, self._stopping.due_us)
         elif not self.open:
-            due.append(1000 * self._handshake.due_ms())
-        resend_ms = self._link.due_ms(now_us // 1000) if self.open else None
+            due_us = min(due_us, 1000 * self._handshake.due_ms())
+        resend_ms = self._link.due_ms(now_ms) if self.open else None
         if resend_ms is not None:
-            due.append(1000 * resend_ms)
+            due_us = min(due_us, 1000 * resend_ms)
         if hearing.holds_lease:
-            due.append(self._written_us + KEEPALIVE_US)
+            due_us = min(due_us, self._written_us + KEEPALIVE_US)
         if hearing.help and (page_ms := hearing.help.due_ms()):
-            due.append(1000 * page_ms)
+            due_us = min(due_us, 1000 * page_ms)
         if self._listens:
-            due.append(hearing.keeper.due_us(now_us))
-        return max(min(due), now_us + 1000)
+            due_us = min(due_us, hearing.keeper.due_us(now_us))
+        return max(due_us, now_us + 1000)
 
     def robot_ms(self, now_us: int) -> int | None:
         """Return the robot's clock at the host's time, or None before the robot has told it."""
@@ -189,20 +175,23 @@ class Session:
 
     def _talk(self, now_us: int) -> None:
         """Have the link say what is due unasked: a question for the clock, or only that the host lives."""
-        asks = self._listens and self.hearing.silence.on_time()
-        if self.hearing.help:
-            for place in self.hearing.help.due(now_us // 1000):
+        hearing = self.hearing
+        if hearing.help:
+            for place in hearing.help.due(now_us // 1000):
                 self._link.post(*page_question(messages.HELP, *place))
-        question = self.hearing.keeper.question(now_us) if asks else None
+        asks = self._listens and hearing.silence.on_time()
+        question = hearing.keeper.question(now_us) if asks else None
         if question is not None:
             self._link.post(messages.CLOCK_REQUEST.number, question)
-        elif self.hearing.holds_lease and now_us - self._written_us >= KEEPALIVE_US:
+        elif hearing.holds_lease and now_us - self._written_us >= KEEPALIVE_US:
             self._link.acknowledge()
 
     def _begin(self) -> None:
         """Seal all further frames with the session's seed."""
         identity = self.identity
-        self._begun = True
+        self.open = True
+        self.viewer = identity.role == messages.VIEWER
+        self.mute = self.viewer or not may_order(self._key, identity)
         try:
             key = session_key(self._key, self._opening, identity)
         except NotPaired as error:

@@ -27,12 +27,13 @@ class Silence:
         self.heard_ms: int | None = None  # when the last intact frame of the session came, or its last telemetry
         self.patience_ms = 0  # how much longer than usual nothing may come, on a line that may break and come back
         self._periods_ms: dict[int, int] = {}  # of telemetry, by subscription
+        self._period_ms = 0  # how often it comes at least, 0: none is due
         self._probed_ms = now_ms
 
     @property
     def expects(self) -> bool:
         """Return whether any telemetry is due at all."""
-        return any(self._periods_ms.values())
+        return self._period_ms > 0
 
     def heard(self, time_ms: int | None) -> None:
         """Note when an intact frame came; None: none did."""
@@ -41,12 +42,14 @@ class Silence:
 
     def on_time(self) -> bool:
         """Return whether no telemetry is overdue, so that what a restarted robot would not understand may be sent."""
-        period_ms = self._period_ms()
-        return not period_ms or self.heard_ms is None or self.read_ms - self.heard_ms <= 2 * period_ms + MARGIN_MS
+        if not self._period_ms or self.heard_ms is None:
+            return True
+        return self.read_ms - self.heard_ms <= 2 * self._period_ms + MARGIN_MS
 
     def expect(self, slot: int, period_ms: int) -> None:
         """Expect telemetry of a subscription that often; 0: not any more."""
         self._periods_ms[slot] = period_ms
+        self._period_ms = min((each for each in self._periods_ms.values() if each), default=0)
 
     def given_up(self, oldest: Asked | None) -> str | None:
         """Return what the robot did to be given up, or None."""
@@ -69,13 +72,8 @@ class Silence:
         if self.heard_ms is None:
             return self._waited_ms(oldest)
         quiet_ms = self.read_ms - self.heard_ms
-        period_ms = self._period_ms()
-        missing_ms = quiet_ms - max(0, 2 * period_ms - PROBE_MS) if period_ms else 0
+        missing_ms = quiet_ms - max(0, 2 * self._period_ms - PROBE_MS) if self._period_ms else 0
         return max(missing_ms, min(quiet_ms, self._waited_ms(oldest)))
-
-    def _period_ms(self) -> int:
-        """Return how often telemetry comes at least, 0: none is due."""
-        return min((each for each in self._periods_ms.values() if each), default=0)
 
     def _waited_ms(self, oldest: Asked | None) -> int:
         """Return for how long the oldest order had waited for its answer when the line was last read."""
