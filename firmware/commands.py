@@ -62,12 +62,13 @@ class Commands:
             self._refuse(self._arming, Refused(code))
             self._arming = -1
 
-    def forget(self) -> None:
-        """Drop what waits for an answer, because nobody is left to be answered."""
+    def forget(self, is_taken_over: bool) -> None:
+        """Drop what waits for an answer, because nobody is left to be answered; and, unless taken over, to begin."""
         if self._arming >= 0:
             self._core.control.all_off(self._core.now_ms)
         self._arming = self.upload.request = -1
-        self._begins = NOT
+        if not is_taken_over:
+            self._begins = NOT
 
     def _tested(self) -> None:
         """Arm or calibrate after a self-test in which every coil was whole, else refuse with its code."""

@@ -225,12 +225,13 @@ class Core:
 
     def _take_session(self, session: int) -> None:
         """Follow the link to a new session: it has what it took over, or no lease, so that what was armed ends now."""
-        if self._attach != self.session:
+        is_taken_over = self._attach == self.session
+        if not is_taken_over:
             self.lease_ms = 0
         self._attach = 0
         self.session = session
         self.pairing.session_begun()
-        self.commands.forget()
+        self.commands.forget(is_taken_over)
         self.reports.subscriptions.forget()
 
     def _end_lease(self) -> None:
