@@ -12,10 +12,9 @@ of its own, so that no value made for one purpose serves another.
 import struct
 from hashlib import sha256
 
-from protocol.frames import VERSION
+from protocol.frames import TAG_BYTES, VERSION
 
 KEY_BYTES = 32
-TAG_BYTES = 8
 _BLOCK = 64
 _INNER = int.from_bytes(b"\x36" * _BLOCK, "little")
 _OUTER = int.from_bytes(b"\x5c" * _BLOCK, "little")
