@@ -126,13 +126,13 @@ class Link:
         return number & 255
 
     def post(self, kind: int, payload: bytes, first: bool = False) -> None:
-        """Queue a frame that is not resent, before all others if need be; the oldest gives way when too many wait.
+        """Queue a frame that is not resent, before all others if need be; the second gives way when too many wait.
 
         ValueError when the payload is longer than PAYLOAD_MAX.
         """
         _check(payload)
         if len(self._posts) >= QUEUE_MAX:
-            self._posts.pop(0)
+            self._posts.pop(1)  # the first may be the answer to a stop
         self._posts.insert(0 if first else len(self._posts), (kind, payload))
 
     def acknowledge(self) -> None:
