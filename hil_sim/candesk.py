@@ -80,8 +80,11 @@ class CanDesk:
                 raise OSError(f"the firmware of robot {number} ended while it booted: {bench.crashes[0].error}")
 
 
-def addresses(channel: str, **options: object) -> list[Address]:
-    """Return the robots of a channel, each with its number and those options; AddressError when two have the same."""
+def addresses(channel: str, sought: int = 0, **options: object) -> list[Address]:
+    """Return the robots of a channel, each with its number and those options; AddressError when two have the same.
+
+    If none was given the number that is `sought`, the last one without a number gets it.
+    """
     parts: list[str] = []
     for piece in filter(None, channel.split(",")):
         if parts and "?" in parts[-1] and not {"@", "?"} & set(piece):
@@ -90,6 +93,12 @@ def addresses(channel: str, **options: object) -> list[Address]:
             parts.append(piece)
     wanted = [parse(_with(part, options)) for part in parts]
     taken = [address.node for address in wanted if address.node]
+    if not 0 <= sought <= NODE_MAX:
+        raise AddressError(f"node={sought}: a whole number from 1 to {NODE_MAX}")
+    nameless = [address for address in wanted if not address.node]
+    if nameless and sought not in (0, *taken):
+        nameless[-1].node = sought
+        taken.append(sought)
     for address in wanted:
         if taken.count(address.node) > 1:
             raise AddressError(f"{channel}: two robots have the number {address.node}")

@@ -34,10 +34,12 @@ PATIENCE_US = 1_000_000  # virtual time between two looks at the keyboard while 
 class SoftrigBus(BusABC):
     """A host on the CAN bus of a desk of robots; other hosts join it with `desk`.
 
-    Options beyond those of the bus are those of an address, for every robot of the channel: slope=10, seed=2.
+    Options beyond those of the bus are those of an address, for every robot of the channel: slope=10, seed=2. `node` is
+    the number of a robot that somebody will look for: the last robot without a number gets it, unless another has it.
     """
 
     repeatable = True  # what happens is a function of what was asked for, on any machine
+    takes_node = True
 
     def __init__(
         self,
@@ -49,13 +51,14 @@ class SoftrigBus(BusABC):
         receive_own_messages: bool = False,
         listen_only: bool = False,
         desk: CanDesk | None = None,
+        node: int = 0,
         **options: Any,
     ) -> None:
         self._thread = threading.get_ident()
         self._own = receive_own_messages
         try:
             with interrupts_deferred(None):
-                self.desk = desk or CanDesk(addresses(channel or "", **options))
+                self.desk = desk or CanDesk(addresses(channel or "", int(node), **options))
             self._host = self.desk.host(int(bitrate), listen_only, int(data_bitrate) if fd else 0)
         except (ValueError, LookupError, OSError, ArithmeticError) as error:
             raise CanInitializationError(str(error)) from error

@@ -14,8 +14,9 @@ import logging
 import os
 import re
 import socket
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from host.errors import BadRequest, NoRobot, PortAbsent, PortBusy, PortForbidden, SoftrigError
@@ -71,7 +72,7 @@ def open_bus(address: CanAddress) -> BusABC:
         known = ", ".join(sorted(can.VALID_INTERFACES))
         raise BadRequest(f"{address.text}: python-can has no interface {address.interface}; it has {known}")
     try:
-        return can.Bus(interface=address.interface, ignore_config=True, **_arguments(address))
+        return can.Bus(interface=address.interface, ignore_config=True, **_arguments(address, can.interfaces.BACKENDS))
     except (can.CanError, OSError, ImportError) as error:
         raise _refusal(address, error) from error
     except (ValueError, TypeError) as error:
@@ -92,10 +93,13 @@ def _pairs(text: str, query: str | None) -> Iterator[tuple[str, Any]]:
         yield name, int(value) if value.isascii() and value.isdigit() else value
 
 
-def _arguments(address: CanAddress) -> dict[str, Any]:
+def _arguments(address: CanAddress, backends: Mapping[str, tuple[str, str]]) -> dict[str, Any]:
     """Return what python-can's interface is called with."""
     told = {"channel": address.channel, "bitrate": address.bitrate_hz, **({"fd": True} if address.fd else {})}
-    if address.interface == "slcan":
+    module, name = backends[address.interface]
+    if address.node != ALL and getattr(getattr(import_module(module), name, None), "takes_node", False):
+        told["node"] = address.node  # it makes the robots, and wants to know how the one that is meant is called
+    elif address.interface == "slcan":
         told["sleep_after_open"] = 0.0  # two seconds otherwise, for adapters that begin anew when they are opened
     elif address.interface == "socketcand":
         told |= _daemon(address)

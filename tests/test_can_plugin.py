@@ -8,6 +8,7 @@ import can
 import pytest
 from can import BusState, CanInitializationError, CanOperationError, Message
 
+from hil_sim.candesk import addresses
 from hil_sim.canhost import (
     ACTIVE,
     BUS_ERROR,
@@ -21,6 +22,8 @@ from hil_sim.canhost import (
 )
 from hil_sim.devices.canbits import bits_of
 from hil_sim.devices.canframe import TAIL_BITS, Frame, length_bits
+from host.link import open_link
+from host.robot import Robot
 
 BIT_US = 2
 
@@ -383,6 +386,32 @@ def test_the_robots_of_the_bench_are_offered_as_channels():
     found = can.detect_available_configs("softrig")
 
     assert {"interface": "softrig", "channel": "sphere-b"} in found
+
+
+@pytest.mark.parametrize(
+    ("channel", "node", "robots"),
+    [
+        ("circular", 3, {3: "circular"}),
+        ("circular@1,sphere-b", 5, {1: "circular", 5: "sphere-b"}),
+        ("circular@1,sphere-b@5", 1, {1: "circular", 5: "sphere-b"}),
+        ("circular,sphere-b@5", 5, {1: "circular", 5: "sphere-b"}),
+        ("circular@2,sphere-b@5", 7, {2: "circular", 5: "sphere-b"}),
+        ("circular,sphere-b", 1, {1: "sphere-b", 2: "circular"}),
+        ("", 4, {}),
+    ],
+)
+def test_the_last_robot_without_a_number_gets_the_one_that_is_looked_for(channel, node, robots):
+    assert {address.node: address.robot for address in addresses(channel, node)} == robots
+
+
+def test_a_robot_is_found_on_the_bench_by_the_number_after_its_name():
+    """As behind any adapter: can:slcan:/dev/ttyACM0@3."""
+    robot = Robot(open_link("can:softrig:circular@3?body=still"))
+
+    robot.connect()
+
+    assert (robot.link.node, sorted(robot.link.bus.observers)) == (3, [3])
+    robot.talk.end()
 
 
 def test_options_of_an_address_are_taken_for_every_robot_and_others_refused():
