@@ -30,7 +30,7 @@ STEP_MS = 5  # of the robot's control loop, in which it reads its line
 CREDIT_BYTES = 960  # that a board gives, of a receive buffer of 1024
 PIECE = 192  # bytes of a program in a message
 SECONDS = 10
-KLIPPER_TRIPS, GRBL_LINES = 102, "23 to 103"  # measured on the same machine with their own firmware, in C
+KLIPPER_TRIPS, GRBL_LINES = 102, "23 to 103"  # measured once, with their own firmware in C; not in this run
 ORDER = FIRE.packed(0b101, 600, 500)
 
 
@@ -132,7 +132,7 @@ def main() -> None:
     first, size = trips(known)
     again, _ = trips(known)
     print(f"round trips to connect: {first} with a dictionary of {size} bytes to read, {again} with a known one, aim 2")
-    print(f"  Klipper, with its dictionary of 4006 bytes: {KLIPPER_TRIPS}\n")
+    print(f"  Klipper, with its dictionary of 4006 bytes: {KLIPPER_TRIPS} (measured once, not in this run)\n")
 
     print("bytes of a coil order             order   answer   acknowledged alone   together")
     for name, options in (("plain", {}), ("with a node", {"node": 3}), ("with a tag", {"key": b"k" * 32})):
@@ -149,7 +149,7 @@ def main() -> None:
         _, pieces = delivered(CODE.number, piece, delay_ms, loss, CREDIT_BYTES)
         print(f"  {delay_ms:2} ms each way, {loss:3.0%} lost{orders:9.0f}{filled:14.0%}{pieces:35.0%}")
     print(f"  aim: all of the line at 16 ms, with {WINDOW} frames on the way and {CREDIT_BYTES} bytes of credit")
-    print(f"  grbl: {GRBL_LINES} lines a second at 16 ms")
+    print(f"  grbl: {GRBL_LINES} lines a second at 16 ms (measured once, not in this run)")
 
 
 if __name__ == "__main__":
