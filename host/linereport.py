@@ -28,7 +28,15 @@ def line_lines(fields: Fields) -> Iterator[str]:
         yield f"  interrupted      {when}: {each['cause']}; {each['telemetry_missed']} records missed"
     link = fields["link"]
     traffic = f"{link['bytes_sent']} bytes out, {link['bytes_received']} in, {link['frames_resent']} frames resent"
-    yield f"  line             {traffic}, {link['frames_damaged']} damaged, {link['telemetry_missed']} missed"
+    missed = f"{link['telemetry_missed']} missed{_by_slot(link['telemetry_missed_by_slot'])}"
+    yield f"  line             {traffic}, {link['frames_damaged']} damaged, {missed}"
     if link.get("clock_bound_ms") is not None:
         drift = f"drifts {link['clock_drift_ppm']:.0f} ppm, known to {link['clock_bound_ms']:.1f} ms"
         yield f"  robot's clock    {link['clock_offset_ms'] / 1000:.3f} s ahead of the host's, {drift}"
+
+
+def _by_slot(missed: dict[str, int]) -> str:
+    """Return which subscription missed how many records, where there were others than the usual one."""
+    if set(missed) <= {"0"}:
+        return ""
+    return f" ({', '.join(f'slot {slot}: {count}' for slot, count in missed.items())})"

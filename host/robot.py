@@ -183,7 +183,8 @@ class Robot(Orders):
 
     def statistics(self) -> dict[str, Any]:
         """Return what the line did so far, and how the robot's clock stands to ours."""
-        return self.talk.session.statistics(self.talk.now_us())
+        by_slot = {str(slot): count for slot, count in self.missed().items()}
+        return {**self.talk.session.statistics(self.talk.now_us()), "telemetry_missed_by_slot": by_slot}
 
     def interruptions(self) -> list[Interruption]:
         """Return when the line was interrupted and came back."""

@@ -23,7 +23,14 @@ INFO = {
     "dictionary": "1648c81d",
     "state": "idle",
 }
-LINE = {"bytes_sent": 1, "bytes_received": 2, "frames_resent": 0, "frames_damaged": 0, "telemetry_missed": 0}
+LINE = {
+    "bytes_sent": 1,
+    "bytes_received": 2,
+    "frames_resent": 0,
+    "frames_damaged": 0,
+    "telemetry_missed": 12,
+    "telemetry_missed_by_slot": {"0": 12},
+}
 
 
 class Watcher:
@@ -179,3 +186,15 @@ def test_of_an_attitude_the_text_tells_only_which_coil_is_down(facts):
 
 def test_a_run_without_a_jump_has_no_line_of_one(facts):
     assert not any("jump" in line for line in lines(report(done(), recording(), facts)))
+
+
+@pytest.mark.parametrize(
+    ("by_slot", "told"),
+    [({}, "12 missed"), ({"0": 12}, "12 missed"), ({"0": 3, "2": 9}, "12 missed (slot 0: 3, slot 2: 9)")],
+)
+def test_what_was_missed_is_told_by_slot_where_there_were_several(facts, by_slot, told):
+    link = {**LINE, "telemetry_missed_by_slot": by_slot}
+
+    said = list(lines(report(done(), recording(), replace(facts, statistics=link))))
+
+    assert said[-1] == f"  line             1 bytes out, 2 in, 0 frames resent, 0 damaged, {told}"

@@ -437,6 +437,7 @@ def test_a_lost_telemetry_record_is_counted(peer):
 
     made = (robot.now_ms() - begun_ms) / 10
     assert len(received) + robot.statistics()["telemetry_missed"] == pytest.approx(made, abs=5)
+    assert robot.statistics()["telemetry_missed_by_slot"] == {"0": robot.statistics()["telemetry_missed"]}
 
 
 def test_a_second_host_may_watch_but_gives_no_orders_and_renews_no_lease(peer, line):
