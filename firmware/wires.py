@@ -93,8 +93,8 @@ class Wires:
             return data
         if not self._taken:
             return b""
+        lines = [b"\x00"] if self._asker == SERIAL else []  # ends what has come of a frame there
         self._asker = self._taken[0].host
-        lines = []
         while self._taken and self._taken[0].host == self._asker:
             lines.append(self._taken.pop(0).line)
         return b"".join(lines)

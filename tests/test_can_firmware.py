@@ -134,6 +134,20 @@ def test_a_stop_by_the_serial_line_ends_what_can_has_ordered(robot, bench):
     assert bench.board.uart.host_read(bench.clock.now_us)
 
 
+def test_noise_on_the_serial_line_costs_can_nothing(robot, bench):
+    """Nothing of it ends in a zero, so what comes by CAN would be taken for the rest of a frame."""
+    robot.arm()
+    robot.fire(["A"], 500, 2000)
+
+    for _ in range(20):
+        bench.board.host_write(b"\xa5" * 8)
+        list(robot.listen(20))
+        robot.status()
+
+    assert bench.coil_gate("A") > 0
+    assert robot.statistics()["frames_resent"] == 0
+
+
 def test_another_host_on_the_serial_line_is_answered_and_may_only_watch(robot, bench):
     robot.arm()
     other = Link()
