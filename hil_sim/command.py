@@ -76,7 +76,8 @@ def sim(
     wanted = _addresses(name, bool(cans), seed, slope, faults, key)
     if listen and tcp is None:
         raise click.UsageError("--listen says where a TCP port listens: add --tcp PORT")
-    place = None if tcp is None else (_listening(listen, wanted[0]), tcp)
+    first = min(wanted, key=lambda address: address.node)  # which the port belongs to, see serving.py
+    place = None if tcp is None else (_listening(listen, first), tcp)
     desk = _desk(wanted)
     try:
         with Serving(name, desk, link, place) as serving:

@@ -4,7 +4,8 @@
         serving.link_to(Path("robot")); serving.listen("127.0.0.1", 7000); serving.can("slcan", "")
         serving.run(speed=1.0, say=print)
 
-Each robot has a pseudo-terminal of its own; a link and a TCP port belong to the first. CAN ports are of all.
+Each robot has a pseudo-terminal of its own; a link and a TCP port belong to the one with the
+lowest number. CAN ports are of all.
 """
 
 import signal

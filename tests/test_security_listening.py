@@ -31,6 +31,14 @@ def test_a_place_that_others_reach_is_refused_without_a_key(arguments, message):
     assert message in result.output
 
 
+def test_it_is_the_robot_behind_the_port_that_needs_the_key():
+    """A TCP port belongs to the robot with the lowest number, wherever that stands."""
+    result = CliRunner().invoke(sim, ["circular@5?key=none.key,circular@2", "--tcp", "0", "--listen", "0.0.0.0"])
+
+    assert result.exit_code == 2
+    assert NEEDS_A_KEY in result.output
+
+
 def test_a_tcp_port_is_this_machines_own_unless_told_otherwise():
     with Tcp(0) as tcp:
         assert tcp._listener.getsockname()[0] == LOOPBACK
