@@ -1,11 +1,11 @@
 """Robots of the bench behind real ports, in real time, until the operator ends it: what `softrig sim` does.
 
-    with Serving("circular", desk) as serving:
-        serving.link_to(Path("robot")); serving.listen("127.0.0.1", 7000); serving.can("slcan", "")
+    with Serving("circular", desk, Path("robot"), ("127.0.0.1", 7000)) as serving:
+        serving.can("slcan", "")
         serving.run(speed=1.0, say=print)
 
-Each robot has a pseudo-terminal of its own; a link and a TCP port belong to the one with the
-lowest number. CAN ports are of all.
+Each robot has a pseudo-terminal of its own; a link and a TCP port belong to the one with the lowest number. CAN ports
+are of all.
 """
 
 import signal
