@@ -122,12 +122,12 @@ def _told(error: BaseException, as_json: bool) -> int:
         return 1
     if not isinstance(error, SoftrigError):
         raise error
-    if as_json:
-        from host.cli.output import error_line  # noqa: PLC0415
+    from host.cli.output import error_line, note  # noqa: PLC0415
 
+    if as_json:
         click.echo(error_line(error))
     prefix = "" if getattr(error, "diagnostics", None) else "softrig: "
-    click.echo(f"{prefix}{error}", err=True)
+    note(f"{prefix}{error}")
     return error.exit_code
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,6 +13,8 @@ import click
 
 from host.errors import BadRequest, SoftrigError
 
+_UNPRINTED = re.compile(r"[^ -~\n\t]")  # what may not be printable
+
 
 def emit(as_json: bool, fields: Any, lines: Iterable[str]) -> None:
     """Print `fields` as one line of JSON, or `lines` as they are."""
@@ -19,12 +22,17 @@ def emit(as_json: bool, fields: Any, lines: Iterable[str]) -> None:
         click.echo(json_line(fields))
         return
     for line in lines:
-        click.echo(line)
+        click.echo(printable(line))
 
 
 def note(text: str) -> None:
     """Print a line for the reader that is no result."""
-    click.echo(text, err=True)
+    click.echo(printable(text), err=True)
+
+
+def printable(text: str) -> str:
+    """Return text with what a terminal would obey, or cannot show, as numbers: some of it is what a robot says."""
+    return _UNPRINTED.sub(_number, text)
 
 
 @contextmanager
@@ -38,7 +46,7 @@ def writing(path: Path) -> Iterator[None]:
 
 def json_line(fields: Any) -> str:
     """Return `fields` on one line, names in their order, numbers as they are."""
-    return json.dumps(fields, ensure_ascii=False, allow_nan=False, default=float)
+    return _UNPRINTED.sub(_json_number, json.dumps(fields, ensure_ascii=False, allow_nan=False, default=float))
 
 
 def error_line(error: SoftrigError) -> str:
@@ -51,3 +59,12 @@ def error_line(error: SoftrigError) -> str:
     if diagnostics:
         fields["diagnostics"] = [item.as_dict() for item in diagnostics]
     return json_line(fields)
+
+
+def _number(match: re.Match[str]) -> str:
+    character = match[0]
+    return character if character.isprintable() else character.encode("unicode_escape").decode()
+
+
+def _json_number(match: re.Match[str]) -> str:
+    return match[0] if match[0].isprintable() else json.dumps(match[0])[1:-1]

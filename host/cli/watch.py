@@ -12,7 +12,7 @@ import click
 
 from host.cli.connection import connected
 from host.cli.options import json_option, robot_option, time_ms
-from host.cli.output import json_line, note
+from host.cli.output import json_line, note, printable
 from host.errors import BadRequest
 from host.records import Record, Sample, Telemetry, row_of
 from host.robot import Robot
@@ -112,7 +112,7 @@ def _table(labels: tuple[str, ...]) -> Iterator[Show]:
                 drawn_ms = record.host_ms
                 table = Table.grid("", "", padding=(0, 2))
                 for name, value in fields_of(record, labels).items():
-                    table.add_row(name, _told(value))
+                    table.add_row(name, printable(_told(value)))
                 live.update(table, refresh=True)
 
         yield show
