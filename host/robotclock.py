@@ -10,7 +10,7 @@ stands for any time of the next millisecond.
 
     clock.read(telemetry.now_ms, now_ms)
     clock.answered(asked_ms, reply.received_ms)
-    clock.at(now_ms), clock.bound_ms(now_ms)
+    clock.at(now_ms), clock.figures(now_ms).bound_ms
 """
 
 from __future__ import annotations
