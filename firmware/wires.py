@@ -1,8 +1,8 @@
 """The wires between robot and hosts: the serial line, and the CAN bus where there is a controller for it.
 
 Both are listened to at once. What came in by one is given to the core by itself, a turn for each; a stop is taken from
-any of them without waiting for its turn. Answers to a greeting go where the greeting came from, `stopped` goes
-everywhere, all else goes where the session's last valid frame came from.
+any of them without waiting for its turn, and so is the word to start together. Answers to a greeting go where the
+greeting came from, `stopped` goes everywhere, all else goes where the session's last valid frame came from.
 
     wires = Wires(board, core, board.can(node))
     wires.step(now_ms)
@@ -10,9 +10,9 @@ everywhere, all else goes where the session's last valid frame came from.
 
 from firmware.beacons import Beacons
 from firmware.rates import Rates
-from protocol.canbus import ALL, BYTE_NS
+from protocol.canbus import ALL, BYTE_NS, SYNC_LINE
 from protocol.frames import GREETINGS_BELOW, STOP, StopFinder
-from protocol.messages import STOPPED
+from protocol.messages import STOPPED, SYNC
 
 SERIAL = 0  # the source that is the serial line; any other is the node of a host on CAN
 WAITING_MAX = 32  # bodies that came by CAN
@@ -54,13 +54,15 @@ class Wires:
             return data
         urgent = self._finder.feed(data)  # also where its halves come in two reads, and a body by CAN between them
         self._serial = (self._serial + data)[-SERIAL_MAX:]
-        stop = STOP if urgent else b""
+        stop, word = STOP if urgent else b"", b""
         for body in taken:
             if body.host == ALL and body.line == STOP:
                 stop = STOP
+            elif body.kind == SYNC.number:
+                word = b"\x00" + SYNC_LINE  # whatever half of a frame came before it
             elif len(self._taken) < WAITING_MAX:
                 self._taken.append(body)
-        return stop + self._turn(urgent)
+        return stop + word + self._turn(urgent)
 
     def room(self) -> int:
         """Return how many bytes `write` takes now."""

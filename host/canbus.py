@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from typing import Protocol as Interface
 
 from host.canaddress import CanAddress, first_line, open_bus, parse
-from host.canlane import Lane
+from host.canlane import NEVER_S, Lanes
 from host.errors import LinkLost, SoftrigError
 from host.link import monotonic_s, pause_until
 from protocol.canbus import ALL, FROM_ROBOT, Assembler, CanFrame, kind_of
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 FLUSH_S = 0.5
 SEND_S = 2.0
 CAUGHT_MAX = 4096  # frames
-TICK_S = 1e-6  # of a clock of microseconds: a wait that is shorter might not end
+TICK_S = 5e-7  # half the tick of a clock of microseconds: a wait that is shorter is over
 OFF_S = 1.0  # that an adapter may be bus-off; most come back by themselves
 BUS_OFF = 0x40  # class of an error frame, as Linux numbers them
 
@@ -54,7 +54,7 @@ class CanBus:
         self._message = Message
         self._lost = (CanError, OSError, ValueError, TypeError)
         self._lines: list[Line] = []
-        self._lanes: dict[int, Lane] = {}
+        self._lanes = Lanes(address.bitrate_hz)
         self._assemblers: dict[int, Assembler] = {}
         self._off_s: float | None = None  # since when the adapter is bus-off
 
@@ -71,13 +71,13 @@ class CanBus:
     def send(self, frame: CanFrame, lane: int) -> None:
         """Queue a frame for a robot; a stop goes at once."""
         if frame.extended:
-            self._lanes.setdefault(lane, Lane()).add(frame)
+            self._lanes.lane(lane).add(frame)
         else:
             self._put(frame)
 
     def notice(self, stuffed: bytes, lane: int) -> None:
         """Look whether a frame is one that was sent before."""
-        self._lanes.setdefault(lane, Lane()).notice(stuffed)
+        self._lanes.lane(lane).notice(stuffed)
 
     def turn(self, until_s: float) -> bool:
         """Send what is due and wait for one frame, at most until then; return whether one has come."""
@@ -105,7 +105,7 @@ class CanBus:
             return
         with suppress(SoftrigError):
             until_s = self.now_s() + FLUSH_S
-            while any(lane.waiting for lane in self._lanes.values()) and self.now_s() + TICK_S <= until_s:
+            while self._lanes.due_s() < NEVER_S and self.now_s() + TICK_S <= until_s:
                 self.turn(until_s)
         self._lines.remove(line)
         if not self._lines:
@@ -121,13 +121,10 @@ class CanBus:
 
     def _flush(self) -> float:
         """Send what is due; return when something is next."""
-        now_s, next_s = self.now_s(), float("inf")
-        for lane in self._lanes.values():
-            if lane.waiting and lane.due_s < now_s + TICK_S:
-                self._put(lane.pop(now_s))
-            if lane.waiting:
-                next_s = min(next_s, lane.due_s)
-        return next_s
+        now_s = self.now_s()
+        while (due_s := self._lanes.due_s()) < now_s + TICK_S:
+            self._put(self._lanes.pop(now_s))
+        return due_s
 
     def _put(self, frame: CanFrame) -> None:
         long = self.address.fd and frame.extended

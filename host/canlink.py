@@ -16,8 +16,8 @@ from host.errors import BadRequest, NoRobot, Silent
 from host.link import Link
 from host.records import Stopped, stopped_of
 from protocol import frames
-from protocol.canbus import ALL, CLASSIC, FD, STOP_DATA, STOP_IDENTIFIER, CanFrame, Segmenter
-from protocol.messages import STOPPED
+from protocol.canbus import ALL, CLASSIC, FD, STOP_DATA, STOP_IDENTIFIER, CanFrame, Segmenter, kind_of
+from protocol.messages import STOPPED, SYNC
 
 SETTLE_S = 0.05  # in which others may answer a greeting that went to all
 SILENT_S = 2.5  # after which a number that nobody has is told
@@ -52,7 +52,10 @@ class CanLink:
         return self.bus.now_s()
 
     def write(self, data: bytes) -> None:
-        """Send stuffed frames; stops first, each once, the rest as the robot can take it."""
+        """Send stuffed frames; stops first, each once, the rest as the robot can take it, and the word to start twice.
+
+        Nobody acknowledges that word. The second follows at once, and who has started passes it over.
+        """
         if self._asked_s is None:
             self._asked_s = self.now_s()
         cut = self._segmenter.feed(data)
@@ -63,6 +66,8 @@ class CanLink:
         for frame in cut:
             if frame.extended:
                 self.bus.send(frame, self.node)
+                if kind_of(frame.identifier) == SYNC.number:
+                    self.bus.send(frame, self.node)
 
     def read(self, until_s: float) -> bytes:
         """Return all that a robot has said by now, or b"" at `until_s`; LinkLost when the bus is gone.

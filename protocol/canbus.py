@@ -5,10 +5,12 @@ travels as a transfer: each CAN frame carries a segment byte and up to 7 bytes o
 segment byte: bit 7 the first, bit 6 the last of a body, bits 5 to 0 a counter that runs on over all segments that its
 sender sends, so that what is left of two bodies never fits together. On CAN FD the body's length stands after the first
 segment byte, because the last segment may be padded. The stop pattern is a frame of its own that beats all others:
-standard identifier 0, data `STOP`, for every robot.
+standard identifier 0, data `STOP`, for every robot. So is the word for which robots wait to start together: identifier
+of a `sync`, data `SYNC`; it is in every receiver at the same time, and nobody has to acknowledge it.
 
 A robot's controller has room for one segment, and loses those that come before it was fetched: whoever sends to a
-robot leaves GAP_MS between two of them, and WAKE_MS after the first that follows a second of silence.
+robot leaves GAP_MS between two of them, and WAKE_MS after the first that follows a second of silence. What goes to all
+is not acknowledged by each: it keeps WAKE_MS from anything else that the same host sends.
 
     for frame in Segmenter(node, host, False).feed(link.poll(now_ms)): ...
     received = assembler.feed(frame.identifier, frame.extended, frame.data, now_ms)
@@ -28,6 +30,8 @@ NODE_MAX = 126
 HOST = 1  # the node of a host that was not given one
 CLASSIC, FD = 8, 64  # bytes of data in a CAN frame
 STOP_IDENTIFIER, STOP_DATA = 0, b"STOP"  # a standard frame; every other is extended
+SYNC_DATA = b"SYNC"
+SYNC_LINE = frames.encode(frames.seal(SYNC.number, 0, 0, b"", 0, 0))  # as which it reaches the core
 FIRST, LAST, COUNTER = 0x80, 0x40, 0x3F
 BEACONS = (BEACON.number, BEACON_COILS.number)  # kinds whose frames are whole and have no segment byte
 LATE_MS = 100  # between two segments of a body
@@ -101,6 +105,9 @@ class Segmenter:
         if body is None or len(body) < frames.BODY_MIN:
             return
         number = identifier(body[1], self.robot, self.host, self._from_robot)
+        if body[1] == SYNC.number:
+            out.append(CanFrame(number, True, SYNC_DATA))
+            return
         rest = bytes((len(body),)) + body if self.mtu == FD else body
         step = self.mtu - 1
         for at in range(0, len(rest), step):
@@ -147,13 +154,17 @@ class Assembler:
             return Taken(ALL, ALL, 0, frames.STOP) if stop else None
         if identifier & (FROM_ROBOT | 7) != self._direction or len(data) < 2 or kind_of(identifier) in BEACONS:
             return None
-        partial = self._partial(identifier & _KEY, data, now_ms)
-        if partial is None:
-            return None
-        body = self._continued(partial, data, now_ms, fd)
-        if body is None:
-            return None
-        return Taken(identifier >> 10 & 127, identifier >> 3 & 127, body[1], frames.encode(body))
+        if kind_of(identifier) == SYNC.number:
+            line = SYNC_LINE if data == SYNC_DATA else None
+        else:
+            line = self._line(identifier & _KEY, data, now_ms, fd)
+        return Taken(identifier >> 10 & 127, identifier >> 3 & 127, kind_of(identifier), line) if line else None
+
+    def _line(self, key: int, data: bytes, now_ms: int, fd: bool):
+        """Take a segment; return the stuffed body that it completes, or None."""
+        partial = self._partial(key, data, now_ms)
+        body = None if partial is None else self._continued(partial, data, now_ms, fd)
+        return None if body is None else frames.encode(body)
 
     def _partial(self, key: int, data: bytes, now_ms: int):
         """Return the body that a segment belongs to, a new one for its first, or None where it fits to none."""

@@ -16,6 +16,8 @@ PWM_US = 700  # until the chip follows
 BUSES_US = 2_500  # that the step which switches spends on its buses before it does, see invariants.py
 LEASE_MS = 5_000
 HEAT_MS = 200
+SHORT_MS = 10
+PHASE_US = 170  # thirty of them are a control step
 
 
 class Eight:
@@ -36,19 +38,46 @@ class Eight:
             for robot in self.robots.values():
                 robot.talk.turn(robot.now_ms() + 1)
 
-    def rest_ms(self, ms: int) -> None:
+    def rest_us(self, us: int) -> None:
         """Let time pass in which this host says nothing but what already waits."""
-        until_s = self.bus.now_s() + ms / 1000
+        until_s = self.bus.now_s() + us / 1e6
         while self.bus.now_s() < until_s:
             self.bus.turn(until_s)
 
+    def ask(self, message, **values) -> dict:
+        """Give all the same order at the same time; return its numbers."""
+        return {node: robot.talk.ask(message, **values) for node, robot in self.robots.items()}
+
+    def order(self, message, **values) -> None:
+        """Give all the same order at the same time, and wait for all answers."""
+        for node, seq in self.ask(message, **values).items():
+            self.robots[node].talk.answer(seq)
+
     def arm(self) -> None:
         """Arm all that are not, and clear what was stopped."""
-        for robot in self.robots.values():
-            if robot.status().state == "tripped":
-                robot.clear()
-            robot.arm(LEASE_MS)
+        if self.states() == {"tripped"}:
+            self.order(messages.CLEAR)
+        asked = {
+            robot: robot.talk.ask(messages.ARM, session=robot.talk.session.number, lease_ms=LEASE_MS, without=0)
+            for robot in self.robots.values()
+        }
+        for robot, seq in asked.items():
+            robot.talk.answer(seq)
         assert self.states() == {"armed"}
+
+    def upload(self, heat_ms: int) -> None:
+        """Give all a program that heats one coil for so long."""
+        code = program.fire(0b1, 500, heat_ms) + program.delay(heat_ms) + program.halt()
+        for robot in self.robots.values():
+            whole = program.header(code, robot.profile.crc, 0) + code
+            robot.upload(whole[: program.HEADER_BYTES], whole[program.HEADER_BYTES :])
+
+    def say_sync(self) -> int:
+        """Say the word for which all wait; return when."""
+        caller, asked_us = Link(), round(self.bus.now_s() * 1e6)
+        caller.post(messages.SYNC.number, b"")
+        self.all.write(caller.poll(asked_us // 1000))
+        return asked_us
 
     def disarm(self) -> None:
         for robot in self.robots.values():
@@ -96,20 +125,13 @@ def test_all_send_telemetry_at_the_same_time(eight):
 
 
 def test_one_sync_starts_the_programs_of_all_in_the_same_control_step(eight):
-    code = program.fire(0b1, 500, HEAT_MS) + program.delay(HEAT_MS) + program.halt()
-    for robot in eight.robots.values():
-        whole = program.header(code, robot.profile.crc, 0) + code
-        robot.upload(whole[: program.HEADER_BYTES], whole[program.HEADER_BYTES :])
+    eight.upload(HEAT_MS)
     eight.arm()
     for robot in eight.robots.values():
         robot.ready()
     assert eight.states() == {"armed"}
-    eight.rest_ms(20)
 
-    caller, asked_us = Link(), round(eight.bus.now_s() * 1e6)
-    caller.post(messages.SYNC.number, b"")
-    eight.all.write(caller.poll(asked_us // 1000))
-    eight.rest_ms(20)
+    asked_us = eight.say_sync()
     eight.run_ms(2 * HEAT_MS)
     began_us = [since(bench, "A", asked_us)[0] - asked_us for bench in eight.benches.values()]
     ended_us = [bench.coil("A").off_at_us - asked_us for bench in eight.benches.values()]
@@ -118,6 +140,28 @@ def test_one_sync_starts_the_programs_of_all_in_the_same_control_step(eight):
     assert max(began_us) <= 4 * STEP_US, began_us
     assert max(began_us) - min(began_us) <= STEP_US + PWM_US, began_us
     assert max(ended_us) - min(ended_us) <= STEP_US + PWM_US, ended_us
+
+
+def test_all_start_at_any_time_at_which_the_word_is_said_however_busy_their_lines_are(eight):
+    eight.upload(SHORT_MS)
+    eight.arm()
+    for robot in eight.robots.values():
+        robot.subscribe(50)
+
+    spread_us = []
+    for phase in range(30):
+        eight.order(messages.START, at_ms=messages.AT_SYNC)
+        eight.ask(messages.STATUS_REQUEST)
+        eight.rest_us(phase * PHASE_US)
+        asked_us = eight.say_sync()
+        eight.run_ms(SHORT_MS + 15)
+        began_us = [since(bench, "A", asked_us)[0] for bench in eight.benches.values()]
+        spread_us.append(max(began_us) - min(began_us))
+    for robot in eight.robots.values():
+        robot.subscribe(0)
+    eight.disarm()
+
+    assert max(spread_us) <= STEP_US + PWM_US, spread_us
 
 
 def test_one_stop_switches_the_coils_of_all_off_within_one_control_step(eight):

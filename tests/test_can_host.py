@@ -1,6 +1,7 @@
 """The host's end of CAN: addresses, errors in one line, and lines over python-can's own virtual bus."""
 
 from itertools import pairwise
+from math import ceil
 
 import can
 import pytest
@@ -51,7 +52,7 @@ class VirtualBus:
     def recv(self, timeout: float | None = None) -> can.Message | None:
         if self.broken:
             raise self.broken
-        until_ms = self.now_ms + max(0, round((timeout or 0) * 1000))
+        until_ms = self.now_ms + max(0, ceil((timeout or 0) * 1000 - 1e-6))
         while not self._arriving and self.now_ms < until_ms:
             self.now_ms += 1
             self._serve()

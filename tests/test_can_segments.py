@@ -23,7 +23,7 @@ from protocol.canbus import (
 )
 from protocol.messages import ALIVE, EVENT, FIRE, HELLO, IDENTITY, SYNC, TELEMETRY
 
-KINDS = [kind for kind in range(256) if kind not in (0x58, 0x59)]
+KINDS = [kind for kind in range(256) if kind not in (0x58, 0x59, SYNC.number)]
 LEGAL_FD = {*range(9), 12, 16, 20, 24, 32, 48, 64}
 bodies = st.builds(
     lambda kind, rest: bytes((0x20, kind)) + rest, st.sampled_from(KINDS), st.binary(min_size=6, max_size=251)
@@ -232,6 +232,22 @@ def test_a_body_of_another_kind_than_its_identifier_is_dropped():
 
     assert [assembler.feed(identifier(0x20, 3, 1, True), True, data, 0) for data in body] == [None, None]
     assert assembler.dropped == 1
+
+
+def test_the_word_to_start_together_is_one_frame_for_all():
+    (frame,) = cut([frames.seal(SYNC.number, 0, 0, b"", 0, 0)], robot=ALL)
+    taken = Assembler(False).feed(*frame, 0)
+
+    assert frame == CanFrame(identifier(SYNC.number, ALL, 1, False), True, b"SYNC")
+    assert (taken.robot, taken.host, taken.kind) == (ALL, 1, SYNC.number)
+    assert [each.kind for each in frames.Decoder().feed(taken.line)] == [SYNC.number]
+
+
+@pytest.mark.parametrize("data", [b"", b"SYN", b"STOP", b"SYNC\0", b"\xc0\x20\x07\0\0\0\0\0"])
+def test_no_other_data_is_that_word(data):
+    assembler = Assembler(False)
+
+    assert assembler.feed(identifier(SYNC.number, ALL, 1, False), True, data, 0) is None
 
 
 def test_beacons_are_not_segments():
