@@ -50,6 +50,7 @@ def fields(table: Table) -> dict[str, object]:
         **_telemetry(table),
         **_can(),
         **_tables(table),
+        "vectors": table(("", "holds"), _parts_of_the_vectors()),
     }
 
 
@@ -254,6 +255,11 @@ def _tables(table: Table) -> dict[str, object]:
         "codes": table(("code", "number", "unit", ""), told),
         "bounds": bounds(table),
     }
+
+
+def _parts_of_the_vectors() -> list[tuple[str, ...]]:
+    lines = (line.split(maxsplit=1) for line in (vectors.__doc__ or "").splitlines() if line.startswith("    "))
+    return [(f"`{name}`", words) for name, words in lines]
 
 
 def bounds(table: Table) -> str:

@@ -192,7 +192,7 @@ STOPPED = Message(
     Field("now_ms", "I"),  # The robot's clock.
 )  # fmt: skip
 NAK = Message(
-    0x06, "nak",  # An unseeded frame could not be served.
+    0x06, "nak",  # A greeting could not be served.
     Field("kind", "B"),  # Kind of the frame.
     Field("code", "H"),  # Why. [CODES]
     Field("version", "B"),  # Protocol version of the robot.
@@ -252,7 +252,7 @@ CLOCK_REQUEST = Message(
 )  # fmt: skip
 PROGRAM = Message(
     0x20, "program",  # Begins the upload of a program.
-    Field("header", "s"),  # The program's header, see program.py.
+    Field("header", "s"),  # The program's header, 16 bytes.
 )  # fmt: skip
 CODE = Message(
     0x21, "code",  # A piece of the program's code.
@@ -332,7 +332,7 @@ EVENT = Message(
 TELEMETRY = Message(
     0x50, "telemetry",  # A record of a subscription, not repeated when lost.
     Field("slot", "B"),  # Which of the subscriptions. [0..3]
-    Field("form", "B"),  # 0: the usual variables; else 1 more than the number of the `subscribe` frame, modulo 255.
+    Field("form", "B"),  # 0: the usual variables; else 1 + (seq of `subscribe` modulo 255).
     Field("count", "B"),  # Number of the record, modulo 256; those that found no room on the line are counted too.
     Field("now_ms", "I"),  # The robot's clock.
     Field("values", "s"),  # The variables in the order of the subscription, one with a value per coil with all of them;

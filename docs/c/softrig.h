@@ -904,7 +904,7 @@ static inline int softrig_unpack_stopped(softrig_stopped *out, softrig_bytes pay
     return 0;
 }
 
-/* 0x06 nak: An unseeded frame could not be served. */
+/* 0x06 nak: A greeting could not be served. */
 #define SOFTRIG_NAK_BYTES 4u
 typedef struct softrig_nak {
     uint8_t kind; /* Kind of the frame. */
@@ -1173,7 +1173,7 @@ static inline int softrig_unpack_clock_request(softrig_clock_request *out, softr
 /* 0x20 program: Begins the upload of a program. */
 #define SOFTRIG_PROGRAM_BYTES 0u /* at least */
 typedef struct softrig_program {
-    softrig_bytes header; /* The program's header, see program.py. */
+    softrig_bytes header; /* The program's header, 16 bytes. */
 } softrig_program;
 
 static inline int softrig_pack_program(const softrig_program *in, uint8_t *out, size_t room)
@@ -1507,7 +1507,7 @@ static inline int softrig_unpack_event(softrig_event *out, softrig_bytes payload
 #define SOFTRIG_TELEMETRY_BYTES 7u /* at least */
 typedef struct softrig_telemetry {
     uint8_t slot; /* Which of the subscriptions. 0 to 3. */
-    uint8_t form; /* 0: the usual variables; else 1 more than the number of the subscribe frame, modulo 255. */
+    uint8_t form; /* 0: the usual variables; else 1 + (seq of subscribe modulo 255). */
     uint8_t count; /* Number of the record, modulo 256; those that found no room on the line are counted too. */
     uint32_t now_ms; /* The robot's clock. */
     softrig_bytes values; /* The variables in the order of the subscription, one with a value per coil with all of them; every byte exclusive-ored with 0x55. */
