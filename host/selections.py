@@ -65,16 +65,19 @@ class Selections:
     def __init__(self) -> None:
         self._slots: defaultdict[int, _Slot] = defaultdict(_Slot)
 
-    def ask(self, seq: int, selection: Selection) -> None:
-        """Note what an order of that number asks for: records of it may come before the answer."""
+    def ask(self, seq: int, selection: Selection, robot_ms: int | None = None) -> None:
+        """Note what an order of that number asks for: records of it may come before the answer.
+
+        The robot's clock shows at least `robot_ms` now, None: not known; what was told before is of another session.
+        """
         slot = self._slots[selection.slot]
+        if not slot.forms:
+            slot.begin(robot_ms)
         form = USUAL_FORM if selection.numbers == variables.USUAL else 1 + seq % 255
         slot.forms.pop(form, None)
         slot.forms[form] = selection
         if len(slot.forms) > FORMS_KEPT:
             del slot.forms[next(iter(slot.forms))]
-        if slot.due is None:
-            slot.due = 0
 
     def take(self, payload: bytes, labels: tuple[str, ...], host_ms: int) -> Telemetry | Sample | None:
         """Return the record of that payload, None when it came before or is of nobody's asking; ValueError: damaged."""
@@ -104,9 +107,19 @@ class _Slot:
         self.forms: dict[int, Selection] = {}
         self.due: int | None = None  # number of the next record, None: whichever comes
         self._now_ms: int | None = None  # of the newest record
+        self._begun_ms: int | None = None  # the robot's clock when this session first asked, or less
+
+    def begin(self, robot_ms: int | None) -> None:
+        """Count from the first record on, whatever another session was told."""
+        self.missed, self.due, self._now_ms, self._begun_ms = 0, 0, None, robot_ms
 
     def counted(self, count: int, now_ms: int, period_ms: int) -> bool:
-        """Count what is missing before a record; False when it is one that came already, or out of its order."""
+        """Count what is missing before a record; False when it is one that came already, or out of its order.
+
+        One that another session was told is only told.
+        """
+        if self._begun_ms is not None and since(now_ms, self._begun_ms) < 0:
+            return True
         gap = 0 if self.due is None else (count - self.due) & 255
         passed_ms = 0 if self._now_ms is None else since(now_ms, self._now_ms)
         if self._now_ms is not None and -LATE_MS < passed_ms <= 0 and gap > 127:

@@ -72,7 +72,8 @@ class Session:
             raise BadRequest(str(error)) from error
         seq: int = self._link.send(message.number, payload, now_us // 1000)
         if message is messages.SUBSCRIBE:
-            self.hearing.selections.ask(seq, selection_of(values))
+            robot_ms = self.hearing.keeper.clock.earliest(now_us / 1000)
+            self.hearing.selections.ask(seq, selection_of(values), robot_ms)
         self.hearing.answers.expect(seq, Asked(message.name, now_us // 1000, values, self.hearing.keeper.told_ms))
         return seq
 

@@ -19,6 +19,12 @@ def record(count, now_ms, supply_mv=2000, slot=0, form=1):
     return messages.TELEMETRY.pack(slot=slot, form=form, count=count & 255, now_ms=now_ms & 0xFFFFFFFF, values=values)
 
 
+def usual(count, now_ms):
+    """Return the payload of a record of the usual variables."""
+    values = variables.veiled(struct.pack("<BHHHhhhB3H3h", 2, 7, 2000, 15, 231, 0, 0, 255, 0, 600, 0, 250, 991, 250))
+    return messages.TELEMETRY.pack(slot=0, form=0, count=count, now_ms=now_ms, values=values)
+
+
 def asked(period_ms=10, on_change=False, seq=0):
     selections = Selections()
     selections.ask(seq, Selection(0, SUPPLY, period_ms, on_change))
@@ -52,6 +58,19 @@ def test_a_record_of_the_usual_variables_is_telemetry_even_to_who_did_not_ask():
     told = Selections().take(payload, LABELS, host_ms=80)
 
     assert told == Telemetry(80, 70, "armed", 7, 2000, 15, 23.1, (0, 600, 0), (25.0, 99.1, 25.0))
+
+
+def test_what_another_session_was_told_is_not_missed_by_this_one():
+    """A robot goes on telling the session of a host that has gone, until the next one asks."""
+    selections = Selections()
+
+    before = [selections.take(usual(count, 1000 + 10 * count), LABELS, 0) for count in (80, 81)]
+    selections.ask(0, Selection(0, variables.USUAL, 10, False), robot_ms=1825)
+    late = selections.take(usual(82, 1820), LABELS, 0)
+    own = [selections.take(usual(count, 1830 + 10 * count), LABELS, 0) for count in (0, 1, 3)]
+
+    assert None not in [*before, late, *own]
+    assert selections.missed() == {0: 1}
 
 
 def test_a_record_that_is_of_nobodys_asking_is_passed_over():
