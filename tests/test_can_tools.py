@@ -79,6 +79,22 @@ def test_cantools_monitor_shows_the_robots(adapter, name, shown):
         assert terminal.ended() == 0
 
 
+def test_softrig_runs_a_script_over_the_adapter(adapter, tmp_path):
+    script = tmp_path / "two.gait"
+    script.write_text("gait 1\nrobot circular\nfire A at 40 % for 300 ms\nfire C at 30 % for 200 ms\n")
+    command = [SOFTRIG, "run", str(script), "--robot", f"can:slcan:{adapter}@3", "--json"]
+
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=PATIENCE_S)
+
+    assert done.returncode == 0, done.stdout + done.stderr
+    report = json.loads(done.stdout.splitlines()[-1])
+    assert report["result"] == "done"
+    assert {label: coil["on_s"] for label, coil in report["coils"].items() if coil["on_s"]} == {
+        "A": pytest.approx(0.3, abs=0.06),  # a record of telemetry
+        "C": pytest.approx(0.2, abs=0.06),
+    }
+
+
 class Terminal:
     """A program on a terminal of its own."""
 
