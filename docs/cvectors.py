@@ -19,7 +19,7 @@ def text() -> str:
     for vector in vectors.streams():
         kinds = [table[name].number for name in vector["kinds"]]
         calls.append(_stream(vector["wire"], kinds, vector["stops"], vector["why"]))
-    calls += [_segments(vector) for vector in vectors.segments()]
+    calls += [_segments(vector) for vector in vectors.segments() if vector["message"] != "sync"]  # which is no segment
     filled = {
         "DICTIONARY_CRC": str(vectors.DICTIONARY_CRC),
         "SESSION": str(vectors.SESSION),

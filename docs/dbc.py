@@ -1,8 +1,8 @@
 """The DBC: what the frames of a CAN bus say, for cantools and every other tool that reads one.
 
 A body travels in segments: the first shows its head, with the fields of the payload that fit whole into its last three
-bytes; the others show bytes. Beacons and the stop are whole. The identifiers are those of robot 1 and host 1; the mask
-MASK leaves the two nodes out, so that the frames of every robot are found.
+bytes; the others show bytes. Beacons, `sync` and the stop are whole. The identifiers are those of robot 1 and host 1;
+the mask MASK leaves the two nodes out, so that the frames of every robot are found.
 
     cantools decode --frame-id-mask 0x1FFE0007 --no-strict docs/softrig.dbc
 """
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from docs.definitions import Place, Row, enums, rows
 from protocol import canbus, frames
+from protocol.messages import SYNC
 
 ROBOT, HOST = 1, canbus.HOST
 MASK = 0x1FFFFFFF & ~(127 << 10 | 127 << 3)
@@ -74,19 +75,29 @@ def text() -> str:
 
 def messages() -> Iterator[Message]:
     """Yield every frame: the stop, then each message in each of its ways, by its number."""
-    word = Signal(
-        "word", 0, 32, "Always the letters STOP.", names=((int.from_bytes(canbus.STOP_DATA, "little"), "STOP"),)
-    )
     words = "All coils off, on every robot, at once. Whoever sends it, whoever hears it."
-    yield Message(canbus.STOP_IDENTIFIER, "stop", len(canbus.STOP_DATA), "host", words, (word,))
+    yield Message(canbus.STOP_IDENTIFIER, "stop", len(canbus.STOP_DATA), "host", words, (_word(canbus.STOP_DATA),))
     for row in sorted(rows(), key=lambda row: row.number):
         for way in ("to", "from") if row.ways == "both" else (row.ways,):
             number = canbus.identifier(row.number, ROBOT, HOST, way == "from") | EXTENDED
             name = f"{row.name}_{way}_robot" if row.ways == "both" else row.name
             sender = "robot" if way == "from" else "host"
-            signals = tuple(_fields(row, 0, "") if row.number in canbus.BEACONS else segment(row))
-            size = row.size if row.number in canbus.BEACONS else canbus.CLASSIC
-            yield Message(number, name, size, sender, row.words, signals)
+            yield Message(number, name, *_inside(row, sender))
+
+
+def _inside(row: Row, sender: str) -> tuple[int, str, str, tuple[Signal, ...]]:
+    """Return the size, the sender, the meaning and the signals of a message's frame."""
+    if row.number == SYNC.number:
+        return len(canbus.SYNC_DATA), sender, row.words, (_word(canbus.SYNC_DATA),)
+    if row.number in canbus.BEACONS:
+        return row.size, sender, row.words, tuple(_fields(row, 0, ""))
+    return canbus.CLASSIC, sender, row.words, tuple(segment(row))
+
+
+def _word(data: bytes) -> Signal:
+    """Return the signal of a frame that is always the same."""
+    word = data.decode()
+    return Signal("word", 0, 32, f"Always the letters {word}.", names=((int.from_bytes(data, "little"), word),))
 
 
 def segment(row: Row) -> Iterator[Signal]:

@@ -14,7 +14,7 @@ looks at the interrupt pin once in a control step, and tries a beacon now and th
 
 from array import array
 
-from firmware.drivers.mcp2515 import BUS_OFF
+from firmware.drivers.mcp2515 import ACTIVE, BUS_OFF
 from protocol.canbus import ALL, ANSWERS, FROM_ROBOT, STOP_DATA, STOP_IDENTIFIER, Assembler, CanFrame, Segmenter
 
 BITRATE_HZ = 500_000
@@ -84,8 +84,9 @@ class CanPort:
     def __init__(self, chip, interrupt, node: int) -> None:
         self.node = node
         self.overflows = 0  # times that a frame was lost because nobody fetched it
-        self.bus_offs = 0
+        self.bus_offs = 0  # looks at the controller that found it so
         self.refused = 0  # bodies for which there was no room
+        self.state = ACTIVE  # of the controller, see its driver
         self.awake = False
         self.stopped = False  # a stop has come that `take` has not told yet
         self._chip = chip
@@ -94,7 +95,7 @@ class CanPort:
         self._segmenter = Segmenter(node, ALL, True)
         self._received = Ring(RECEIVED_MAX)
         self._urgent, self._bulk = Ring(URGENT_MAX), Ring(BULK_MAX)
-        self._heard = self._off = self._probing = False
+        self._heard = self._probing = False
         self._lively_ms = self._moved_ms = self._checked_ms = 0
         chip.accept(0, 0x7FF, (0,), False)
         chip.accept(1, _TO_ROBOT, (node << 10, ALL << 10), True)
@@ -207,13 +208,12 @@ class CanPort:
         self._chip.give_up()
 
     def _check(self) -> None:
-        """Count overflows and times of bus-off."""
+        """Take up the state of the controller; count overflows and looks that found it bus-off."""
         self._is_ready()
         if self._chip.overflowed():
             self.overflows += 1
-        off = self._chip.state() == BUS_OFF
-        self.bus_offs += off and not self._off
-        self._off = off
+        self.state = self._chip.state()
+        self.bus_offs += self.state == BUS_OFF
 
     def _is_ready(self) -> bool:
         """Return whether the chip works; one that has lost its settings begins anew."""

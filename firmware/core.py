@@ -33,6 +33,7 @@ class Core:
         self.version = VERSION
         self.code = 0  # of the last fault
         self.overruns = 0
+        self.can = None  # its port, where there is one
         self.session = 0
         self.lease_ms = 0  # of the session that armed
         self.now_ms = 0

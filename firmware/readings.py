@@ -18,7 +18,7 @@ class Readings:
             self._state, self._code, self._step, self._coils_on, self._without, self._lease_left, self._supply,
             self._current, self._board, self._roll, self._pitch, self._down, self._dropped, self._resent,
             self._overruns, self._duties, self._temperatures, self._heats, self._resistances, self._martensites,
-            self._least, self._most,
+            self._least, self._most, self._can_state, self._can_overflows, self._can_refused, self._can_bus_offs,
         )  # fmt: skip
         self._core = core
         self._channels, self._sense, self._attitude = core.channels, core.sense, core.attitude
@@ -109,3 +109,15 @@ class Readings:
     def _most(self, values: list) -> None:
         resistance = self._resistance
         values.extend([resistance.most_decidegc(channel) for channel in range(self._channels.count)])
+
+    def _can_state(self, values: list) -> None:
+        values.append(self._core.can.state if self._core.can else 0)
+
+    def _can_overflows(self, values: list) -> None:
+        values.append(self._core.can.overflows & 0xFFFF if self._core.can else 0)
+
+    def _can_refused(self, values: list) -> None:
+        values.append(self._core.can.refused & 0xFFFF if self._core.can else 0)
+
+    def _can_bus_offs(self, values: list) -> None:
+        values.append(self._core.can.bus_offs & 0xFFFF if self._core.can else 0)

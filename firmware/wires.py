@@ -23,7 +23,7 @@ class Wires:
     """The serial line of `board` and the CAN bus behind `port`, or None, with one core at their end."""
 
     def __init__(self, board, core, port) -> None:
-        self.port = port
+        self.port = core.can = port
         self._board = board
         self._core = core
         self._beacons = Beacons(core, port) if port else None
@@ -66,8 +66,8 @@ class Wires:
 
     def room(self) -> int:
         """Return how many bytes `write` takes now."""
-        room = self._room(self._host)
-        return room if self._asker == self._host else max(room, self._room(self._asker))
+        room = self._room(self._asker)
+        return max(room, self._room(self._host)) if self._core.session else room
 
     def byte_ns(self) -> int:
         """Return the time of a byte on its way from the host that spoke last."""

@@ -21,7 +21,7 @@ WIDER = 4  # times the distance, at each frame that has to be sent again
 EASED_AFTER = 50  # segments that were not missed, before their distance is halved again
 RECENT = 32  # frames among which one that is sent again is recognised
 WAITING_MAX = 2048
-SPARE = 2  # times that a frame takes, until the next one
+SPARE = 1.5  # times that a frame takes, until the next one
 NEVER_S = float("inf")
 
 
@@ -34,22 +34,25 @@ class Lane:
         self._gap_s = GAP_S
         self._sent_s = -SLEEP_S
         self._passed = 0
-        self._recent: deque[tuple[int, int]] = deque(maxlen=RECENT)
+        self._added = 0
+        self._recent: deque[tuple[tuple[int, int], int]] = deque(maxlen=RECENT)  # and how many were added before
 
     def add(self, frame: CanFrame) -> None:
         """Queue a frame; what is too much is lost, as on any line."""
         if len(self.waiting) < WAITING_MAX:
             self.waiting.append(frame)
+            self._added += 1
 
     def notice(self, stuffed: bytes) -> None:
-        """Keep more distance when a reliable frame is sent again: the robot has missed a segment, or is far behind."""
+        """Keep more distance when a reliable frame is sent again that had left: the robot has missed a segment."""
         body = frames.decode(stuffed)
         if not body or len(body) < frames.BODY_MIN or not body[0] & frames.RELIABLE:
             return
         mark = (body[1], body[2])
-        if mark in self._recent:
+        left = self._added - len(self.waiting)
+        if any(mark == seen and left > before for seen, before in self._recent):
             self._gap_s, self._passed = min(WIDER * self._gap_s, GAP_MAX_S), 0
-        self._recent.append(mark)
+        self._recent.append((mark, self._added))
 
     def pop(self, now_s: float) -> CanFrame:
         """Take the frame that is due, and reckon when the next one is."""

@@ -38,6 +38,10 @@ VARIABLES = (
     Variable("martensite_permille", "H*"),  # Share of martensite by that resistance, 65535: not known.
     Variable("least_decidegc", "h*"),  # What the coil's temperature was at least by that resistance, -32768: no bound.
     Variable("most_decidegc", "h*"),  # What the coil's temperature was at most by that resistance, 32767: no bound.
+    Variable("can_state", "B"),  # 0: no CAN, or its controller is stopped; 1: in order, 2: warning, 3: passive, 4: off.
+    Variable("can_overflows", "H"),  # Times that CAN frames to the robot were lost unread, modulo 65536.
+    Variable("can_refused", "H"),  # Frames of the robot for which CAN had no room, modulo 65536.
+    Variable("can_bus_offs", "H"),  # Looks, ten a second, that found the robot off the bus by errors, modulo 65536.
 )
 
 

@@ -12,7 +12,7 @@ from host.canaddress import parse
 from host.canbus import CanBus
 from host.canlink import CanLink
 from host.errors import LinkLost, Silent
-from host.records import Telemetry
+from host.records import Sample, Telemetry
 from host.robot import Robot
 from protocol import frames, messages, program
 from protocol.canbus import ALL, GAP_MS, HOST, WAKE_MS, Assembler, Segmenter, identifier
@@ -217,7 +217,7 @@ def test_segments_that_come_too_close_are_sent_again_and_kept_apart(robot, bus, 
     robot.upload(program.header(code, robot.profile.crc), code)
 
     assert robot.statistics()["frames_resent"] > 0
-    assert lane._gap_s > 0.0005
+    assert lane._gap_s > 0.0002
 
 
 def test_no_segment_is_lost_to_a_control_step_that_measures_coils(robot):
@@ -345,3 +345,15 @@ def test_robots_that_wait_for_one_word_start_within_one_control_step():
     assert abs(began_us[0] - began_us[1]) <= STEP_US
     for line in list(bus._lines):
         line.close()
+
+
+def test_what_the_bus_cost_is_among_the_variables(robot, bus, bench):
+    names = ["can_state", "can_overflows", "can_refused", "can_bus_offs"]
+    robot.subscribe(50, names)
+    before = [each.values for each in robot.listen(500) if isinstance(each, Sample)]
+    bus._bus.desk.wire.spoil(800, bench.board.can.can)
+    after = [each.values for each in robot.listen(1500) if isinstance(each, Sample)]
+
+    assert before[-1] == {"can_state": 1, "can_overflows": 0, "can_refused": 0, "can_bus_offs": 0}
+    assert after[-1]["can_bus_offs"] > 0
+    assert after[-1]["can_state"] == 1

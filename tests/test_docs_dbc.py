@@ -46,6 +46,12 @@ def test_the_stop_is_read_as_a_stop(bus):
     assert read(bus, frame) == ("stop", {"word": "STOP"})
 
 
+def test_the_word_to_start_together_is_read_whole(bus):
+    (frame,) = segments(messages.SYNC, b"", canbus.ALL, 7, False)
+
+    assert read(bus, frame) == ("sync", {"word": "SYNC"})
+
+
 def test_the_first_segment_shows_head_and_first_fields(bus):
     payload = messages.EVENT.pack(event=messages.TRIP, code=105, step=4, channel=2, value=7, now_ms=99)
 

@@ -166,7 +166,7 @@ def test_a_slot_that_fills_the_line_leaves_the_others_their_turn(slots):
     [
         ({"slot": 4}, codes.SLOT_LIMIT, 4, 3),
         ({"period_ms": 4}, codes.PERIOD_LIMIT, 4, 5),
-        ({"variables": bytes([0, 22])}, codes.UNKNOWN_VARIABLE, 22, 21),
+        ({"variables": bytes([0, 26])}, codes.UNKNOWN_VARIABLE, 26, 25),
         ({"variables": bytes([18]) * 8}, codes.RECORD_LIMIT, 256, 229),
     ],
 )

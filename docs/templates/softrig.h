@@ -447,7 +447,8 @@ static inline int softrig_is_stop(softrig_decoder *decoder, uint8_t byte)
     return 1;
 }
 
-/* ---- CAN: bodies in segments; the stop is a standard frame with identifier 0 and the data STOP ---- */
+/* ---- CAN: bodies in segments; the stop is a standard frame with identifier 0 and the data STOP, and a `sync` is one
+ * frame with its identifier and the data SYNC ---- */
 
 #define SOFTRIG_CAN_ALL @CAN_ALL@u /* node of every robot, and of every host */
 #define SOFTRIG_CAN_HOST @CAN_HOST@u /* node of a host that was not given one */
