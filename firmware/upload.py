@@ -33,6 +33,8 @@ class Upload:
             raise Refused(codes.TOO_LARGE, 255, read.length, self._profile.program_bytes_max)
         self._header = read
         self.outlives_host = read.flags & program.OUTLIVES_HOST != 0
+        self._check = None
+        self.code = bytearray(0)  # else there would have to be room for both
         self.code = bytearray(read.length)
 
     def piece(self, offset: int, code: bytes) -> None:

@@ -18,6 +18,7 @@ from protocol.flight import BYTES_ANY, WINDOW, Flight
 from protocol.messages import ALIVE
 
 QUEUE_MAX = 96
+POSTS_MAX = 16  # a board has not the memory for as many answers as strangers may ask for
 RESERVE = WINDOW + 8  # places of it that no credit is given for: a window may come on credit that was taken back since
 ALIVE_BYTES = 7
 LAPS = 4  # of its 256 numbers that a posted frame may be ahead when all before it were lost
@@ -131,7 +132,7 @@ class Link:
         ValueError when the payload is longer than PAYLOAD_MAX.
         """
         _check(payload)
-        if len(self._posts) >= QUEUE_MAX:
+        if len(self._posts) >= POSTS_MAX:
             self._posts.pop(1)  # the first may be the answer to a stop
         self._posts.insert(0 if first else len(self._posts), (kind, payload))
 
@@ -235,8 +236,8 @@ class Link:
         if in_turn and not self._ahead:
             self._next_receive = number + 1
             delivered.append(Received(kind, seq, payload))
-        else:
-            self._ahead.append((number, frame))
+        elif in_turn or self._kept() + len(payload) <= self.grant_bytes:
+            self._ahead.append((number, Received(kind, seq, payload)))
             self._deliver(delivered)
 
     def _begins(self, frame) -> bool:
@@ -269,9 +270,12 @@ class Link:
             if not due:
                 return
             self._ahead.remove(due[0])
-            frame = due[0][1]
-            delivered.append(Received(frame.kind, frame.seq, frame.payload))
+            delivered.append(due[0][1])
             self._next_receive += 1
+
+    def _kept(self) -> int:
+        """Return how many bytes wait for what was sent before them: no more than the credit that was given."""
+        return sum([len(received.payload) for _, received in self._ahead])
 
     def _is_new(self, number: int) -> bool:
         """Return whether a reliable frame of that number may come now, and has not yet."""

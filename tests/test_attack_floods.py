@@ -11,16 +11,16 @@ STEP_BYTES = 57  # that it carries in a control step at 115200 baud
 
 def test_what_goes_first_is_not_what_gives_way():
     link = Link()
-    for _ in range(links.QUEUE_MAX):
+    for _ in range(links.POSTS_MAX):
         link.post(messages.NAK.number, b"old")
 
     link.post(messages.STOPPED.number, b"first", first=True)
-    for _ in range(links.QUEUE_MAX):
+    for _ in range(links.POSTS_MAX):
         link.post(messages.NAK.number, b"new")
 
     told = [received.kind for received in Link().receive(link.poll(0), 0)]
     assert told[0] == messages.STOPPED.number
-    assert len(told) == links.QUEUE_MAX
+    assert len(told) == links.POSTS_MAX
 
 
 def test_a_stop_is_answered_at_once_while_a_stranger_asks_for_page_after_page():
