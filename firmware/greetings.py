@@ -25,7 +25,10 @@ class Greetings:
                 self._dictionary(messages.DICTIONARY.unpack(received.payload))
             elif received.kind == messages.SYNC.number:
                 self._core.commands.sync()
-            elif received.kind > messages.SYNC.number:
+            elif received.kind == messages.WATCH.number:
+                core = self._core
+                core.reports.subscriptions.watch(messages.WATCH.unpack(received.payload).period_ms, core.now_ms)
+            elif received.kind > messages.WATCH.number:
                 self._nak(received.kind, codes.UNKNOWN_MESSAGE)
         except ValueError:
             self._nak(received.kind, codes.BAD_PAYLOAD)

@@ -15,7 +15,9 @@ from firmware.readings import Readings
 from protocol import codes, variables
 from protocol.frames import BODY_MIN, FRAME_MAX, PAYLOAD_MAX, STUFFING
 
-SLOTS = 4
+SLOTS = 4  # of a session; one more is for those who only watch
+WATCH_MS = 2000  # after it was asked for, they get no more
+WATCH_PERIOD_MS = 50  # at the least: the line is the session's
 STEP_MS = 5  # nothing changes within a control step
 STILL_MS = 1000  # what has not changed is told again this often: the record that told it may be lost
 HEAD = "<BBBI"  # slot, form, count, now_ms
@@ -54,7 +56,8 @@ class Subscriptions:
     def forget(self) -> None:
         """End all: nobody is left who asked for it."""
         self.active = ()
-        self._slots = [Subscription(place) for place in range(SLOTS)]
+        self._slots = [Subscription(place) for place in range(SLOTS + 1)]
+        self._watched_ms = 0
         self._turn = 0
 
     def subscribe(self, slot: int, period_ms: int, on_change: bool, numbers: bytes, request: int, now_ms: int) -> None:
@@ -74,11 +77,26 @@ class Subscriptions:
         mine.period_ms = period_ms
         self.active = [each for each in self._slots if each.period_ms]
 
+    def watch(self, period_ms: int, now_ms: int) -> None:
+        """Send the usual variables for a while to whoever asks, whichever session there is."""
+        mine = self._slots[SLOTS]
+        if not mine.period_ms:
+            mine.layout = variables.layout(variables.USUAL, self._coils)
+            mine.room = struct.calcsize(mine.layout) + BESIDE
+            mine.due_ms = now_ms
+        mine.period_ms = max(period_ms, WATCH_PERIOD_MS)
+        self._watched_ms = now_ms
+        self.active = [each for each in self._slots if each.period_ms]
+
     def record(self, now_ms: int, room: int) -> bytes:
         """Return the payload of a record that is due and for which there is room, or b""; the slots take turns."""
         for _ in self.active:
             self._turn = (self._turn + 1) % len(self.active)
             mine = self.active[self._turn]
+            if mine.place == SLOTS and now_ms - self._watched_ms > WATCH_MS:
+                mine.period_ms = 0
+                self.active = [each for each in self._slots if each.period_ms]
+                return b""
             if now_ms - mine.due_ms >= 0:
                 values = self._values(mine, now_ms, room)
                 if values:

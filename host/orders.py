@@ -110,6 +110,10 @@ class Orders:
         named = b"" if variables is None else numbers_of(variables)
         self.talk.order(messages.SUBSCRIBE, slot=slot, period_ms=period_ms, on_change=int(on_change), variables=named)
 
+    def overhear(self, period_ms: int) -> None:
+        """Have the usual variables sent, as Telemetry, also where this session may only watch; 0 ends it."""
+        self.talk.session.overhear(period_ms, self.talk.now_us())
+
     def upload(self, header: bytes, code: bytes, progress: Callable[[int], None] | None = None) -> None:
         """Send a compiled program; `progress` is told how many bytes have been taken."""
         talk = self.talk

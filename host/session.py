@@ -27,6 +27,7 @@ from protocol import codes, messages
 from protocol.link import Link
 
 KEEPALIVE_US = 100_000
+WATCH_AGAIN_US = 800_000  # a robot sends for two seconds: one request may be lost
 TICK_US = 50_000  # while the robot owes something
 IDLE_TICK_US = 250_000
 
@@ -45,6 +46,8 @@ class Session:
         self._link = Link()
         self._stopping = Stopping()
         self._written_us = now_us
+        self._watch_ms = 0  # period of what is asked for without a session, 0: nothing
+        self._watch_due_us = now_us
         self._bytes_in = self._bytes_out = self._damaged_before = 0
 
     @property
@@ -76,6 +79,10 @@ class Session:
             self.hearing.selections.ask(seq, selection_of(values), robot_ms)
         self.hearing.answers.expect(seq, Asked(message.name, now_us // 1000, values, self.hearing.keeper.told_ms))
         return seq
+
+    def overhear(self, period_ms: int, now_us: int) -> None:
+        """Have the robot send the usual variables to whoever listens, as long as this host lives; 0 ends it."""
+        self._watch_ms, self._watch_due_us = period_ms, now_us
 
     def read_help(self) -> Pages:
         """Have the help texts of the dictionary read; they are there once the pages are complete."""
@@ -143,6 +150,8 @@ class Session:
             due_us = min(due_us, 1000 * resend_ms)
         if hearing.holds_lease:
             due_us = min(due_us, self._written_us + KEEPALIVE_US)
+        if self._watch_ms:
+            due_us = min(due_us, self._watch_due_us)
         if hearing.help and (page_ms := hearing.help.due_ms()):
             due_us = min(due_us, 1000 * page_ms)
         if self._listens:
@@ -180,6 +189,9 @@ class Session:
         if hearing.help:
             for place in hearing.help.due(now_us // 1000):
                 self._link.post(*page_question(messages.HELP, *place))
+        if self._watch_ms and now_us >= self._watch_due_us:
+            self._watch_due_us = now_us + WATCH_AGAIN_US
+            self._link.post(messages.WATCH.number, messages.WATCH.packed(self._watch_ms))
         asks = self._listens and hearing.silence.on_time()
         question = hearing.keeper.question(now_us) if asks else None
         if question is not None:

@@ -38,7 +38,7 @@ BOOT, IDLE, ARMED, RUNNING, TRIPPED = 0, 1, 2, 3, 4
 
 EVENTS = (
     "", "started", "step", "finished", "aborted", "tripped", "disarmed", "cleared", "cut-off", "lost", "defaults",
-    "accepted", "step done",
+    "accepted", "step-done",
 )  # fmt: skip
 STARTED, STEP, FINISHED, ABORTED, TRIP, DISARMED, CLEARED, CUT_OFF, LOST, DEFAULTED = 1, 2, 3, 4, 5, 6, 7, 8, 9, 10
 ACCEPTED, STEP_DONE = 11, 12
@@ -198,6 +198,10 @@ NAK = Message(
     Field("version", "B"),  # Protocol version of the robot.
 )  # fmt: skip
 SYNC = Message(0x07, "sync")  # To all robots that wait for it: start your program now. Never answered.
+WATCH = Message(
+    0x08, "watch",  # Asks, from no session, for the usual variables as slot 4 for the next two seconds.
+    Field("period_ms", "H"),  # Between two records; the robot takes 50 ms where less is asked.
+)  # fmt: skip
 
 ALIVE = Message(
     0x10, "alive",  # Acknowledges in full, gives credit, and renews the lease like any frame of the session.
@@ -331,7 +335,7 @@ EVENT = Message(
 )  # fmt: skip
 TELEMETRY = Message(
     0x50, "telemetry",  # A record of a subscription, not repeated when lost.
-    Field("slot", "B"),  # Which of the subscriptions. [0..3]
+    Field("slot", "B"),  # Which of the subscriptions; 4: of whoever asked by `watch`. [0..4]
     Field("form", "B"),  # 0: the usual variables; else 1 + (seq of `subscribe` modulo 255).
     Field("count", "B"),  # Number of the record, modulo 256; those that found no room on the line are counted too.
     Field("now_ms", "I"),  # The robot's clock.
@@ -362,7 +366,7 @@ CLOCK = Message(
 )  # fmt: skip
 
 MESSAGES = (
-    HELLO, IDENTITY, DICTIONARY, DICTIONARY_PAGE, STOPPED, NAK, SYNC,
+    HELLO, IDENTITY, DICTIONARY, DICTIONARY_PAGE, STOPPED, NAK, SYNC, WATCH,
     ALIVE, ARM, DISARM, CLEAR, FIRE, STATUS_REQUEST, SUBSCRIBE,
     FAULTS_REQUEST, CLEAR_FAULTS, SETTINGS_REQUEST, SET, CALIBRATE, COILS_REQUEST, SERVICE, CLOCK_REQUEST,
     PROGRAM, CODE, START, CANCEL, OK, REFUSED, STATUS, FAULTS, SETTINGS, COILS, EVENT, TELEMETRY,

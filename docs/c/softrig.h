@@ -48,6 +48,7 @@ enum {
     SOFTRIG_KIND_STOPPED = 0x05,
     SOFTRIG_KIND_NAK = 0x06,
     SOFTRIG_KIND_SYNC = 0x07,
+    SOFTRIG_KIND_WATCH = 0x08,
     SOFTRIG_KIND_ALIVE = 0x10,
     SOFTRIG_KIND_ARM = 0x11,
     SOFTRIG_KIND_DISARM = 0x12,
@@ -936,6 +937,28 @@ static inline int softrig_unpack_nak(softrig_nak *out, softrig_bytes payload)
 /* 0x07 sync: To all robots that wait for it: start your program now. Never answered. */
 /* It has no payload. */
 
+/* 0x08 watch: Asks, from no session, for the usual variables as slot 4 for the next two seconds. */
+#define SOFTRIG_WATCH_BYTES 2u
+typedef struct softrig_watch {
+    uint16_t period_ms; /* Between two records; the robot takes 50 ms where less is asked. */
+} softrig_watch;
+
+static inline int softrig_pack_watch(const softrig_watch *in, uint8_t *out, size_t room)
+{
+    if (room < SOFTRIG_WATCH_BYTES)
+        return -1;
+    softrig_put16(out, in->period_ms);
+    return (int)SOFTRIG_WATCH_BYTES;
+}
+
+static inline int softrig_unpack_watch(softrig_watch *out, softrig_bytes payload)
+{
+    if (payload.size != SOFTRIG_WATCH_BYTES)
+        return -1;
+    out->period_ms = softrig_get16(payload.at);
+    return 0;
+}
+
 /* 0x10 alive: Acknowledges in full, gives credit, and renews the lease like any frame of the session. */
 #define SOFTRIG_ALIVE_BYTES 7u
 typedef struct softrig_alive {
@@ -1507,7 +1530,7 @@ static inline int softrig_unpack_event(softrig_event *out, softrig_bytes payload
 /* 0x50 telemetry: A record of a subscription, not repeated when lost. */
 #define SOFTRIG_TELEMETRY_BYTES 7u /* at least */
 typedef struct softrig_telemetry {
-    uint8_t slot; /* Which of the subscriptions. 0 to 3. */
+    uint8_t slot; /* Which of the subscriptions; 4: of whoever asked by watch. 0 to 4. */
     uint8_t form; /* 0: the usual variables; else 1 + (seq of subscribe modulo 255). */
     uint8_t count; /* Number of the record, modulo 256; those that found no room on the line are counted too. */
     uint32_t now_ms; /* The robot's clock. */
@@ -1516,7 +1539,7 @@ typedef struct softrig_telemetry {
 
 static inline int softrig_pack_telemetry(const softrig_telemetry *in, uint8_t *out, size_t room)
 {
-    if (in->values.size > SOFTRIG_PAYLOAD_MAX - SOFTRIG_TELEMETRY_BYTES || room < SOFTRIG_TELEMETRY_BYTES + in->values.size || in->slot > 3)
+    if (in->values.size > SOFTRIG_PAYLOAD_MAX - SOFTRIG_TELEMETRY_BYTES || room < SOFTRIG_TELEMETRY_BYTES + in->values.size || in->slot > 4)
         return -1;
     out[0] = in->slot;
     out[1] = in->form;

@@ -545,19 +545,52 @@ static void payload_17(void)
 static void payload_18(void)
 {
     static held payload, packed;
+    softrig_watch in, out;
+    in.period_ms = 0u;
+    hex(&payload, "0000");
+    check(same(packed.at, softrig_pack_watch(&in, packed.at, HELD_MAX), &payload), "watch 18");
+    check(softrig_unpack_watch(&out, view(&payload)) == 0, "watch 18");
+    check(out.period_ms == in.period_ms, "watch 18");
+}
+
+static void payload_19(void)
+{
+    static held payload, packed;
+    softrig_watch in, out;
+    in.period_ms = 65535u;
+    hex(&payload, "ffff");
+    check(same(packed.at, softrig_pack_watch(&in, packed.at, HELD_MAX), &payload), "watch 19");
+    check(softrig_unpack_watch(&out, view(&payload)) == 0, "watch 19");
+    check(out.period_ms == in.period_ms, "watch 19");
+}
+
+static void payload_20(void)
+{
+    static held payload, packed;
+    softrig_watch in, out;
+    in.period_ms = 291u;
+    hex(&payload, "2301");
+    check(same(packed.at, softrig_pack_watch(&in, packed.at, HELD_MAX), &payload), "watch 20");
+    check(softrig_unpack_watch(&out, view(&payload)) == 0, "watch 20");
+    check(out.period_ms == in.period_ms, "watch 20");
+}
+
+static void payload_21(void)
+{
+    static held payload, packed;
     softrig_alive in, out;
     in.have = 0u;
     in.slots = 0u;
     in.bytes = 0u;
     hex(&payload, "00000000000000");
-    check(same(packed.at, softrig_pack_alive(&in, packed.at, HELD_MAX), &payload), "alive 18");
-    check(softrig_unpack_alive(&out, view(&payload)) == 0, "alive 18");
-    check(out.have == in.have, "alive 18");
-    check(out.slots == in.slots, "alive 18");
-    check(out.bytes == in.bytes, "alive 18");
+    check(same(packed.at, softrig_pack_alive(&in, packed.at, HELD_MAX), &payload), "alive 21");
+    check(softrig_unpack_alive(&out, view(&payload)) == 0, "alive 21");
+    check(out.have == in.have, "alive 21");
+    check(out.slots == in.slots, "alive 21");
+    check(out.bytes == in.bytes, "alive 21");
 }
 
-static void payload_19(void)
+static void payload_22(void)
 {
     static held payload, packed;
     softrig_alive in, out;
@@ -565,14 +598,14 @@ static void payload_19(void)
     in.slots = 32u;
     in.bytes = 65535u;
     hex(&payload, "ffffffff20ffff");
-    check(same(packed.at, softrig_pack_alive(&in, packed.at, HELD_MAX), &payload), "alive 19");
-    check(softrig_unpack_alive(&out, view(&payload)) == 0, "alive 19");
-    check(out.have == in.have, "alive 19");
-    check(out.slots == in.slots, "alive 19");
-    check(out.bytes == in.bytes, "alive 19");
+    check(same(packed.at, softrig_pack_alive(&in, packed.at, HELD_MAX), &payload), "alive 22");
+    check(softrig_unpack_alive(&out, view(&payload)) == 0, "alive 22");
+    check(out.have == in.have, "alive 22");
+    check(out.slots == in.slots, "alive 22");
+    check(out.bytes == in.bytes, "alive 22");
 }
 
-static void payload_20(void)
+static void payload_23(void)
 {
     static held payload, packed;
     softrig_alive in, out;
@@ -580,14 +613,14 @@ static void payload_20(void)
     in.slots = 24u;
     in.bytes = 291u;
     hex(&payload, "2301efcd182301");
-    check(same(packed.at, softrig_pack_alive(&in, packed.at, HELD_MAX), &payload), "alive 20");
-    check(softrig_unpack_alive(&out, view(&payload)) == 0, "alive 20");
-    check(out.have == in.have, "alive 20");
-    check(out.slots == in.slots, "alive 20");
-    check(out.bytes == in.bytes, "alive 20");
+    check(same(packed.at, softrig_pack_alive(&in, packed.at, HELD_MAX), &payload), "alive 23");
+    check(softrig_unpack_alive(&out, view(&payload)) == 0, "alive 23");
+    check(out.have == in.have, "alive 23");
+    check(out.slots == in.slots, "alive 23");
+    check(out.bytes == in.bytes, "alive 23");
 }
 
-static void payload_21(void)
+static void payload_24(void)
 {
     static held payload, packed;
     softrig_arm in, out;
@@ -595,14 +628,14 @@ static void payload_21(void)
     in.lease_ms = 0u;
     in.without = 0u;
     hex(&payload, "00000000000000000000");
-    check(same(packed.at, softrig_pack_arm(&in, packed.at, HELD_MAX), &payload), "arm 21");
-    check(softrig_unpack_arm(&out, view(&payload)) == 0, "arm 21");
-    check(out.session == in.session, "arm 21");
-    check(out.lease_ms == in.lease_ms, "arm 21");
-    check(out.without == in.without, "arm 21");
+    check(same(packed.at, softrig_pack_arm(&in, packed.at, HELD_MAX), &payload), "arm 24");
+    check(softrig_unpack_arm(&out, view(&payload)) == 0, "arm 24");
+    check(out.session == in.session, "arm 24");
+    check(out.lease_ms == in.lease_ms, "arm 24");
+    check(out.without == in.without, "arm 24");
 }
 
-static void payload_22(void)
+static void payload_25(void)
 {
     static held payload, packed;
     softrig_arm in, out;
@@ -610,14 +643,14 @@ static void payload_22(void)
     in.lease_ms = 65535u;
     in.without = 4294967295u;
     hex(&payload, "ffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_arm(&in, packed.at, HELD_MAX), &payload), "arm 22");
-    check(softrig_unpack_arm(&out, view(&payload)) == 0, "arm 22");
-    check(out.session == in.session, "arm 22");
-    check(out.lease_ms == in.lease_ms, "arm 22");
-    check(out.without == in.without, "arm 22");
+    check(same(packed.at, softrig_pack_arm(&in, packed.at, HELD_MAX), &payload), "arm 25");
+    check(softrig_unpack_arm(&out, view(&payload)) == 0, "arm 25");
+    check(out.session == in.session, "arm 25");
+    check(out.lease_ms == in.lease_ms, "arm 25");
+    check(out.without == in.without, "arm 25");
 }
 
-static void payload_23(void)
+static void payload_26(void)
 {
     static held payload, packed;
     softrig_arm in, out;
@@ -625,14 +658,14 @@ static void payload_23(void)
     in.lease_ms = 61458u;
     in.without = 3874979985u;
     hex(&payload, "2301efcd12f09180f7e6");
-    check(same(packed.at, softrig_pack_arm(&in, packed.at, HELD_MAX), &payload), "arm 23");
-    check(softrig_unpack_arm(&out, view(&payload)) == 0, "arm 23");
-    check(out.session == in.session, "arm 23");
-    check(out.lease_ms == in.lease_ms, "arm 23");
-    check(out.without == in.without, "arm 23");
+    check(same(packed.at, softrig_pack_arm(&in, packed.at, HELD_MAX), &payload), "arm 26");
+    check(softrig_unpack_arm(&out, view(&payload)) == 0, "arm 26");
+    check(out.session == in.session, "arm 26");
+    check(out.lease_ms == in.lease_ms, "arm 26");
+    check(out.without == in.without, "arm 26");
 }
 
-static void payload_24(void)
+static void payload_27(void)
 {
     static held payload, packed;
     softrig_fire in, out;
@@ -640,14 +673,14 @@ static void payload_24(void)
     in.duty_permille = 0u;
     in.hold_ms = 0u;
     hex(&payload, "0000000000000000");
-    check(same(packed.at, softrig_pack_fire(&in, packed.at, HELD_MAX), &payload), "fire 24");
-    check(softrig_unpack_fire(&out, view(&payload)) == 0, "fire 24");
-    check(out.coils == in.coils, "fire 24");
-    check(out.duty_permille == in.duty_permille, "fire 24");
-    check(out.hold_ms == in.hold_ms, "fire 24");
+    check(same(packed.at, softrig_pack_fire(&in, packed.at, HELD_MAX), &payload), "fire 27");
+    check(softrig_unpack_fire(&out, view(&payload)) == 0, "fire 27");
+    check(out.coils == in.coils, "fire 27");
+    check(out.duty_permille == in.duty_permille, "fire 27");
+    check(out.hold_ms == in.hold_ms, "fire 27");
 }
 
-static void payload_25(void)
+static void payload_28(void)
 {
     static held payload, packed;
     softrig_fire in, out;
@@ -655,14 +688,14 @@ static void payload_25(void)
     in.duty_permille = 1000u;
     in.hold_ms = 65535u;
     hex(&payload, "ffffffffe803ffff");
-    check(same(packed.at, softrig_pack_fire(&in, packed.at, HELD_MAX), &payload), "fire 25");
-    check(softrig_unpack_fire(&out, view(&payload)) == 0, "fire 25");
-    check(out.coils == in.coils, "fire 25");
-    check(out.duty_permille == in.duty_permille, "fire 25");
-    check(out.hold_ms == in.hold_ms, "fire 25");
+    check(same(packed.at, softrig_pack_fire(&in, packed.at, HELD_MAX), &payload), "fire 28");
+    check(softrig_unpack_fire(&out, view(&payload)) == 0, "fire 28");
+    check(out.coils == in.coils, "fire 28");
+    check(out.duty_permille == in.duty_permille, "fire 28");
+    check(out.hold_ms == in.hold_ms, "fire 28");
 }
 
-static void payload_26(void)
+static void payload_29(void)
 {
     static held payload, packed;
     softrig_fire in, out;
@@ -670,14 +703,14 @@ static void payload_26(void)
     in.duty_permille = 882u;
     in.hold_ms = 32913u;
     hex(&payload, "2301efcd72039180");
-    check(same(packed.at, softrig_pack_fire(&in, packed.at, HELD_MAX), &payload), "fire 26");
-    check(softrig_unpack_fire(&out, view(&payload)) == 0, "fire 26");
-    check(out.coils == in.coils, "fire 26");
-    check(out.duty_permille == in.duty_permille, "fire 26");
-    check(out.hold_ms == in.hold_ms, "fire 26");
+    check(same(packed.at, softrig_pack_fire(&in, packed.at, HELD_MAX), &payload), "fire 29");
+    check(softrig_unpack_fire(&out, view(&payload)) == 0, "fire 29");
+    check(out.coils == in.coils, "fire 29");
+    check(out.duty_permille == in.duty_permille, "fire 29");
+    check(out.hold_ms == in.hold_ms, "fire 29");
 }
 
-static void payload_27(void)
+static void payload_30(void)
 {
     static held bytes, payload, packed;
     softrig_subscribe in, out;
@@ -686,15 +719,15 @@ static void payload_27(void)
     in.on_change = 0u;
     in.variables = view(hex(&bytes, ""));
     hex(&payload, "00000000");
-    check(same(packed.at, softrig_pack_subscribe(&in, packed.at, HELD_MAX), &payload), "subscribe 27");
-    check(softrig_unpack_subscribe(&out, view(&payload)) == 0, "subscribe 27");
-    check(out.slot == in.slot, "subscribe 27");
-    check(out.period_ms == in.period_ms, "subscribe 27");
-    check(out.on_change == in.on_change, "subscribe 27");
-    check(same_view(out.variables, &bytes), "subscribe 27");
+    check(same(packed.at, softrig_pack_subscribe(&in, packed.at, HELD_MAX), &payload), "subscribe 30");
+    check(softrig_unpack_subscribe(&out, view(&payload)) == 0, "subscribe 30");
+    check(out.slot == in.slot, "subscribe 30");
+    check(out.period_ms == in.period_ms, "subscribe 30");
+    check(out.on_change == in.on_change, "subscribe 30");
+    check(same_view(out.variables, &bytes), "subscribe 30");
 }
 
-static void payload_28(void)
+static void payload_31(void)
 {
     static held bytes, payload, packed;
     softrig_subscribe in, out;
@@ -703,15 +736,15 @@ static void payload_28(void)
     in.on_change = 1u;
     in.variables = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "03ffff01ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_subscribe(&in, packed.at, HELD_MAX), &payload), "subscribe 28");
-    check(softrig_unpack_subscribe(&out, view(&payload)) == 0, "subscribe 28");
-    check(out.slot == in.slot, "subscribe 28");
-    check(out.period_ms == in.period_ms, "subscribe 28");
-    check(out.on_change == in.on_change, "subscribe 28");
-    check(same_view(out.variables, &bytes), "subscribe 28");
+    check(same(packed.at, softrig_pack_subscribe(&in, packed.at, HELD_MAX), &payload), "subscribe 31");
+    check(softrig_unpack_subscribe(&out, view(&payload)) == 0, "subscribe 31");
+    check(out.slot == in.slot, "subscribe 31");
+    check(out.period_ms == in.period_ms, "subscribe 31");
+    check(out.on_change == in.on_change, "subscribe 31");
+    check(same_view(out.variables, &bytes), "subscribe 31");
 }
 
-static void payload_29(void)
+static void payload_32(void)
 {
     static held bytes, payload, packed;
     softrig_subscribe in, out;
@@ -720,48 +753,48 @@ static void payload_29(void)
     in.on_change = 0u;
     in.variables = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "0391800000017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_subscribe(&in, packed.at, HELD_MAX), &payload), "subscribe 29");
-    check(softrig_unpack_subscribe(&out, view(&payload)) == 0, "subscribe 29");
-    check(out.slot == in.slot, "subscribe 29");
-    check(out.period_ms == in.period_ms, "subscribe 29");
-    check(out.on_change == in.on_change, "subscribe 29");
-    check(same_view(out.variables, &bytes), "subscribe 29");
+    check(same(packed.at, softrig_pack_subscribe(&in, packed.at, HELD_MAX), &payload), "subscribe 32");
+    check(softrig_unpack_subscribe(&out, view(&payload)) == 0, "subscribe 32");
+    check(out.slot == in.slot, "subscribe 32");
+    check(out.period_ms == in.period_ms, "subscribe 32");
+    check(out.on_change == in.on_change, "subscribe 32");
+    check(same_view(out.variables, &bytes), "subscribe 32");
 }
 
-static void payload_30(void)
+static void payload_33(void)
 {
     static held payload, packed;
     softrig_faults_request in, out;
     in.skip = 0u;
     hex(&payload, "00");
-    check(same(packed.at, softrig_pack_faults_request(&in, packed.at, HELD_MAX), &payload), "faults_request 30");
-    check(softrig_unpack_faults_request(&out, view(&payload)) == 0, "faults_request 30");
-    check(out.skip == in.skip, "faults_request 30");
+    check(same(packed.at, softrig_pack_faults_request(&in, packed.at, HELD_MAX), &payload), "faults_request 33");
+    check(softrig_unpack_faults_request(&out, view(&payload)) == 0, "faults_request 33");
+    check(out.skip == in.skip, "faults_request 33");
 }
 
-static void payload_31(void)
+static void payload_34(void)
 {
     static held payload, packed;
     softrig_faults_request in, out;
     in.skip = 255u;
     hex(&payload, "ff");
-    check(same(packed.at, softrig_pack_faults_request(&in, packed.at, HELD_MAX), &payload), "faults_request 31");
-    check(softrig_unpack_faults_request(&out, view(&payload)) == 0, "faults_request 31");
-    check(out.skip == in.skip, "faults_request 31");
+    check(same(packed.at, softrig_pack_faults_request(&in, packed.at, HELD_MAX), &payload), "faults_request 34");
+    check(softrig_unpack_faults_request(&out, view(&payload)) == 0, "faults_request 34");
+    check(out.skip == in.skip, "faults_request 34");
 }
 
-static void payload_32(void)
+static void payload_35(void)
 {
     static held payload, packed;
     softrig_faults_request in, out;
     in.skip = 35u;
     hex(&payload, "23");
-    check(same(packed.at, softrig_pack_faults_request(&in, packed.at, HELD_MAX), &payload), "faults_request 32");
-    check(softrig_unpack_faults_request(&out, view(&payload)) == 0, "faults_request 32");
-    check(out.skip == in.skip, "faults_request 32");
+    check(same(packed.at, softrig_pack_faults_request(&in, packed.at, HELD_MAX), &payload), "faults_request 35");
+    check(softrig_unpack_faults_request(&out, view(&payload)) == 0, "faults_request 35");
+    check(out.skip == in.skip, "faults_request 35");
 }
 
-static void payload_33(void)
+static void payload_36(void)
 {
     static held payload, packed;
     softrig_set in, out;
@@ -769,14 +802,14 @@ static void payload_33(void)
     in.channel = 0u;
     in.value = -2147483647 - 1;
     hex(&payload, "000000000080");
-    check(same(packed.at, softrig_pack_set(&in, packed.at, HELD_MAX), &payload), "set 33");
-    check(softrig_unpack_set(&out, view(&payload)) == 0, "set 33");
-    check(out.setting == in.setting, "set 33");
-    check(out.channel == in.channel, "set 33");
-    check(out.value == in.value, "set 33");
+    check(same(packed.at, softrig_pack_set(&in, packed.at, HELD_MAX), &payload), "set 36");
+    check(softrig_unpack_set(&out, view(&payload)) == 0, "set 36");
+    check(out.setting == in.setting, "set 36");
+    check(out.channel == in.channel, "set 36");
+    check(out.value == in.value, "set 36");
 }
 
-static void payload_34(void)
+static void payload_37(void)
 {
     static held payload, packed;
     softrig_set in, out;
@@ -784,14 +817,14 @@ static void payload_34(void)
     in.channel = 255u;
     in.value = 2147483647;
     hex(&payload, "ffffffffff7f");
-    check(same(packed.at, softrig_pack_set(&in, packed.at, HELD_MAX), &payload), "set 34");
-    check(softrig_unpack_set(&out, view(&payload)) == 0, "set 34");
-    check(out.setting == in.setting, "set 34");
-    check(out.channel == in.channel, "set 34");
-    check(out.value == in.value, "set 34");
+    check(same(packed.at, softrig_pack_set(&in, packed.at, HELD_MAX), &payload), "set 37");
+    check(softrig_unpack_set(&out, view(&payload)) == 0, "set 37");
+    check(out.setting == in.setting, "set 37");
+    check(out.channel == in.channel, "set 37");
+    check(out.value == in.value, "set 37");
 }
 
-static void payload_35(void)
+static void payload_38(void)
 {
     static held payload, packed;
     softrig_set in, out;
@@ -799,224 +832,224 @@ static void payload_35(void)
     in.channel = 145u;
     in.value = 1937489992;
     hex(&payload, "239148c07b73");
-    check(same(packed.at, softrig_pack_set(&in, packed.at, HELD_MAX), &payload), "set 35");
-    check(softrig_unpack_set(&out, view(&payload)) == 0, "set 35");
-    check(out.setting == in.setting, "set 35");
-    check(out.channel == in.channel, "set 35");
-    check(out.value == in.value, "set 35");
+    check(same(packed.at, softrig_pack_set(&in, packed.at, HELD_MAX), &payload), "set 38");
+    check(softrig_unpack_set(&out, view(&payload)) == 0, "set 38");
+    check(out.setting == in.setting, "set 38");
+    check(out.channel == in.channel, "set 38");
+    check(out.value == in.value, "set 38");
 }
 
-static void payload_36(void)
+static void payload_39(void)
 {
     static held payload, packed;
     softrig_calibrate in, out;
     in.session = 0u;
     in.without = 0u;
     hex(&payload, "0000000000000000");
-    check(same(packed.at, softrig_pack_calibrate(&in, packed.at, HELD_MAX), &payload), "calibrate 36");
-    check(softrig_unpack_calibrate(&out, view(&payload)) == 0, "calibrate 36");
-    check(out.session == in.session, "calibrate 36");
-    check(out.without == in.without, "calibrate 36");
+    check(same(packed.at, softrig_pack_calibrate(&in, packed.at, HELD_MAX), &payload), "calibrate 39");
+    check(softrig_unpack_calibrate(&out, view(&payload)) == 0, "calibrate 39");
+    check(out.session == in.session, "calibrate 39");
+    check(out.without == in.without, "calibrate 39");
 }
 
-static void payload_37(void)
+static void payload_40(void)
 {
     static held payload, packed;
     softrig_calibrate in, out;
     in.session = 4294967295u;
     in.without = 4294967295u;
     hex(&payload, "ffffffffffffffff");
-    check(same(packed.at, softrig_pack_calibrate(&in, packed.at, HELD_MAX), &payload), "calibrate 37");
-    check(softrig_unpack_calibrate(&out, view(&payload)) == 0, "calibrate 37");
-    check(out.session == in.session, "calibrate 37");
-    check(out.without == in.without, "calibrate 37");
+    check(same(packed.at, softrig_pack_calibrate(&in, packed.at, HELD_MAX), &payload), "calibrate 40");
+    check(softrig_unpack_calibrate(&out, view(&payload)) == 0, "calibrate 40");
+    check(out.session == in.session, "calibrate 40");
+    check(out.without == in.without, "calibrate 40");
 }
 
-static void payload_38(void)
+static void payload_41(void)
 {
     static held payload, packed;
     softrig_calibrate in, out;
     in.session = 3454992675u;
     in.without = 3168727058u;
     hex(&payload, "2301efcd12f0debc");
-    check(same(packed.at, softrig_pack_calibrate(&in, packed.at, HELD_MAX), &payload), "calibrate 38");
-    check(softrig_unpack_calibrate(&out, view(&payload)) == 0, "calibrate 38");
-    check(out.session == in.session, "calibrate 38");
-    check(out.without == in.without, "calibrate 38");
+    check(same(packed.at, softrig_pack_calibrate(&in, packed.at, HELD_MAX), &payload), "calibrate 41");
+    check(softrig_unpack_calibrate(&out, view(&payload)) == 0, "calibrate 41");
+    check(out.session == in.session, "calibrate 41");
+    check(out.without == in.without, "calibrate 41");
 }
 
-static void payload_39(void)
+static void payload_42(void)
 {
     static held payload, packed;
     softrig_clock_request in, out;
     in.host_us = 0u;
     hex(&payload, "00000000");
-    check(same(packed.at, softrig_pack_clock_request(&in, packed.at, HELD_MAX), &payload), "clock_request 39");
-    check(softrig_unpack_clock_request(&out, view(&payload)) == 0, "clock_request 39");
-    check(out.host_us == in.host_us, "clock_request 39");
+    check(same(packed.at, softrig_pack_clock_request(&in, packed.at, HELD_MAX), &payload), "clock_request 42");
+    check(softrig_unpack_clock_request(&out, view(&payload)) == 0, "clock_request 42");
+    check(out.host_us == in.host_us, "clock_request 42");
 }
 
-static void payload_40(void)
+static void payload_43(void)
 {
     static held payload, packed;
     softrig_clock_request in, out;
     in.host_us = 4294967295u;
     hex(&payload, "ffffffff");
-    check(same(packed.at, softrig_pack_clock_request(&in, packed.at, HELD_MAX), &payload), "clock_request 40");
-    check(softrig_unpack_clock_request(&out, view(&payload)) == 0, "clock_request 40");
-    check(out.host_us == in.host_us, "clock_request 40");
+    check(same(packed.at, softrig_pack_clock_request(&in, packed.at, HELD_MAX), &payload), "clock_request 43");
+    check(softrig_unpack_clock_request(&out, view(&payload)) == 0, "clock_request 43");
+    check(out.host_us == in.host_us, "clock_request 43");
 }
 
-static void payload_41(void)
+static void payload_44(void)
 {
     static held payload, packed;
     softrig_clock_request in, out;
     in.host_us = 3454992675u;
     hex(&payload, "2301efcd");
-    check(same(packed.at, softrig_pack_clock_request(&in, packed.at, HELD_MAX), &payload), "clock_request 41");
-    check(softrig_unpack_clock_request(&out, view(&payload)) == 0, "clock_request 41");
-    check(out.host_us == in.host_us, "clock_request 41");
+    check(same(packed.at, softrig_pack_clock_request(&in, packed.at, HELD_MAX), &payload), "clock_request 44");
+    check(softrig_unpack_clock_request(&out, view(&payload)) == 0, "clock_request 44");
+    check(out.host_us == in.host_us, "clock_request 44");
 }
 
-static void payload_42(void)
+static void payload_45(void)
 {
     static held bytes, payload, packed;
     softrig_program in, out;
     in.header = view(hex(&bytes, ""));
     hex(&payload, "");
-    check(same(packed.at, softrig_pack_program(&in, packed.at, HELD_MAX), &payload), "program 42");
-    check(softrig_unpack_program(&out, view(&payload)) == 0, "program 42");
-    check(same_view(out.header, &bytes), "program 42");
+    check(same(packed.at, softrig_pack_program(&in, packed.at, HELD_MAX), &payload), "program 45");
+    check(softrig_unpack_program(&out, view(&payload)) == 0, "program 45");
+    check(same_view(out.header, &bytes), "program 45");
 }
 
-static void payload_43(void)
+static void payload_46(void)
 {
     static held bytes, payload, packed;
     softrig_program in, out;
     in.header = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_program(&in, packed.at, HELD_MAX), &payload), "program 43");
-    check(softrig_unpack_program(&out, view(&payload)) == 0, "program 43");
-    check(same_view(out.header, &bytes), "program 43");
+    check(same(packed.at, softrig_pack_program(&in, packed.at, HELD_MAX), &payload), "program 46");
+    check(softrig_unpack_program(&out, view(&payload)) == 0, "program 46");
+    check(same_view(out.header, &bytes), "program 46");
 }
 
-static void payload_44(void)
+static void payload_47(void)
 {
     static held bytes, payload, packed;
     softrig_program in, out;
     in.header = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "00017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_program(&in, packed.at, HELD_MAX), &payload), "program 44");
-    check(softrig_unpack_program(&out, view(&payload)) == 0, "program 44");
-    check(same_view(out.header, &bytes), "program 44");
+    check(same(packed.at, softrig_pack_program(&in, packed.at, HELD_MAX), &payload), "program 47");
+    check(softrig_unpack_program(&out, view(&payload)) == 0, "program 47");
+    check(same_view(out.header, &bytes), "program 47");
 }
 
-static void payload_45(void)
+static void payload_48(void)
 {
     static held bytes, payload, packed;
     softrig_code in, out;
     in.offset = 0u;
     in.code = view(hex(&bytes, ""));
     hex(&payload, "0000");
-    check(same(packed.at, softrig_pack_code(&in, packed.at, HELD_MAX), &payload), "code 45");
-    check(softrig_unpack_code(&out, view(&payload)) == 0, "code 45");
-    check(out.offset == in.offset, "code 45");
-    check(same_view(out.code, &bytes), "code 45");
+    check(same(packed.at, softrig_pack_code(&in, packed.at, HELD_MAX), &payload), "code 48");
+    check(softrig_unpack_code(&out, view(&payload)) == 0, "code 48");
+    check(out.offset == in.offset, "code 48");
+    check(same_view(out.code, &bytes), "code 48");
 }
 
-static void payload_46(void)
+static void payload_49(void)
 {
     static held bytes, payload, packed;
     softrig_code in, out;
     in.offset = 65535u;
     in.code = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_code(&in, packed.at, HELD_MAX), &payload), "code 46");
-    check(softrig_unpack_code(&out, view(&payload)) == 0, "code 46");
-    check(out.offset == in.offset, "code 46");
-    check(same_view(out.code, &bytes), "code 46");
+    check(same(packed.at, softrig_pack_code(&in, packed.at, HELD_MAX), &payload), "code 49");
+    check(softrig_unpack_code(&out, view(&payload)) == 0, "code 49");
+    check(out.offset == in.offset, "code 49");
+    check(same_view(out.code, &bytes), "code 49");
 }
 
-static void payload_47(void)
+static void payload_50(void)
 {
     static held bytes, payload, packed;
     softrig_code in, out;
     in.offset = 291u;
     in.code = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "230100017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_code(&in, packed.at, HELD_MAX), &payload), "code 47");
-    check(softrig_unpack_code(&out, view(&payload)) == 0, "code 47");
-    check(out.offset == in.offset, "code 47");
-    check(same_view(out.code, &bytes), "code 47");
-}
-
-static void payload_48(void)
-{
-    static held payload, packed;
-    softrig_start in, out;
-    in.at_ms = 0u;
-    hex(&payload, "00000000");
-    check(same(packed.at, softrig_pack_start(&in, packed.at, HELD_MAX), &payload), "start 48");
-    check(softrig_unpack_start(&out, view(&payload)) == 0, "start 48");
-    check(out.at_ms == in.at_ms, "start 48");
-}
-
-static void payload_49(void)
-{
-    static held payload, packed;
-    softrig_start in, out;
-    in.at_ms = 4294967295u;
-    hex(&payload, "ffffffff");
-    check(same(packed.at, softrig_pack_start(&in, packed.at, HELD_MAX), &payload), "start 49");
-    check(softrig_unpack_start(&out, view(&payload)) == 0, "start 49");
-    check(out.at_ms == in.at_ms, "start 49");
-}
-
-static void payload_50(void)
-{
-    static held payload, packed;
-    softrig_start in, out;
-    in.at_ms = 3454992675u;
-    hex(&payload, "2301efcd");
-    check(same(packed.at, softrig_pack_start(&in, packed.at, HELD_MAX), &payload), "start 50");
-    check(softrig_unpack_start(&out, view(&payload)) == 0, "start 50");
-    check(out.at_ms == in.at_ms, "start 50");
+    check(same(packed.at, softrig_pack_code(&in, packed.at, HELD_MAX), &payload), "code 50");
+    check(softrig_unpack_code(&out, view(&payload)) == 0, "code 50");
+    check(out.offset == in.offset, "code 50");
+    check(same_view(out.code, &bytes), "code 50");
 }
 
 static void payload_51(void)
 {
     static held payload, packed;
-    softrig_ok in, out;
-    in.request = 0u;
-    hex(&payload, "00");
-    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 51");
-    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 51");
-    check(out.request == in.request, "ok 51");
+    softrig_start in, out;
+    in.at_ms = 0u;
+    hex(&payload, "00000000");
+    check(same(packed.at, softrig_pack_start(&in, packed.at, HELD_MAX), &payload), "start 51");
+    check(softrig_unpack_start(&out, view(&payload)) == 0, "start 51");
+    check(out.at_ms == in.at_ms, "start 51");
 }
 
 static void payload_52(void)
 {
     static held payload, packed;
-    softrig_ok in, out;
-    in.request = 255u;
-    hex(&payload, "ff");
-    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 52");
-    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 52");
-    check(out.request == in.request, "ok 52");
+    softrig_start in, out;
+    in.at_ms = 4294967295u;
+    hex(&payload, "ffffffff");
+    check(same(packed.at, softrig_pack_start(&in, packed.at, HELD_MAX), &payload), "start 52");
+    check(softrig_unpack_start(&out, view(&payload)) == 0, "start 52");
+    check(out.at_ms == in.at_ms, "start 52");
 }
 
 static void payload_53(void)
 {
     static held payload, packed;
-    softrig_ok in, out;
-    in.request = 35u;
-    hex(&payload, "23");
-    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 53");
-    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 53");
-    check(out.request == in.request, "ok 53");
+    softrig_start in, out;
+    in.at_ms = 3454992675u;
+    hex(&payload, "2301efcd");
+    check(same(packed.at, softrig_pack_start(&in, packed.at, HELD_MAX), &payload), "start 53");
+    check(softrig_unpack_start(&out, view(&payload)) == 0, "start 53");
+    check(out.at_ms == in.at_ms, "start 53");
 }
 
 static void payload_54(void)
+{
+    static held payload, packed;
+    softrig_ok in, out;
+    in.request = 0u;
+    hex(&payload, "00");
+    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 54");
+    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 54");
+    check(out.request == in.request, "ok 54");
+}
+
+static void payload_55(void)
+{
+    static held payload, packed;
+    softrig_ok in, out;
+    in.request = 255u;
+    hex(&payload, "ff");
+    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 55");
+    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 55");
+    check(out.request == in.request, "ok 55");
+}
+
+static void payload_56(void)
+{
+    static held payload, packed;
+    softrig_ok in, out;
+    in.request = 35u;
+    hex(&payload, "23");
+    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 56");
+    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 56");
+    check(out.request == in.request, "ok 56");
+}
+
+static void payload_57(void)
 {
     static held payload, packed;
     softrig_refused in, out;
@@ -1026,16 +1059,16 @@ static void payload_54(void)
     in.value = -2147483647 - 1;
     in.limit = -2147483647 - 1;
     hex(&payload, "000000000000008000000080");
-    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 54");
-    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 54");
-    check(out.request == in.request, "refused 54");
-    check(out.code == in.code, "refused 54");
-    check(out.channel == in.channel, "refused 54");
-    check(out.value == in.value, "refused 54");
-    check(out.limit == in.limit, "refused 54");
+    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 57");
+    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 57");
+    check(out.request == in.request, "refused 57");
+    check(out.code == in.code, "refused 57");
+    check(out.channel == in.channel, "refused 57");
+    check(out.value == in.value, "refused 57");
+    check(out.limit == in.limit, "refused 57");
 }
 
-static void payload_55(void)
+static void payload_58(void)
 {
     static held payload, packed;
     softrig_refused in, out;
@@ -1045,16 +1078,16 @@ static void payload_55(void)
     in.value = 2147483647;
     in.limit = 2147483647;
     hex(&payload, "ffffffffffffff7fffffff7f");
-    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 55");
-    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 55");
-    check(out.request == in.request, "refused 55");
-    check(out.code == in.code, "refused 55");
-    check(out.channel == in.channel, "refused 55");
-    check(out.value == in.value, "refused 55");
-    check(out.limit == in.limit, "refused 55");
+    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 58");
+    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 58");
+    check(out.request == in.request, "refused 58");
+    check(out.code == in.code, "refused 58");
+    check(out.channel == in.channel, "refused 58");
+    check(out.value == in.value, "refused 58");
+    check(out.limit == in.limit, "refused 58");
 }
 
-static void payload_56(void)
+static void payload_59(void)
 {
     static held payload, packed;
     softrig_refused in, out;
@@ -1064,16 +1097,16 @@ static void payload_56(void)
     in.value = 1021243410;
     in.limit = -104996828;
     hex(&payload, "2391802412f0de3c24e0bdf9");
-    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 56");
-    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 56");
-    check(out.request == in.request, "refused 56");
-    check(out.code == in.code, "refused 56");
-    check(out.channel == in.channel, "refused 56");
-    check(out.value == in.value, "refused 56");
-    check(out.limit == in.limit, "refused 56");
+    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 59");
+    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 59");
+    check(out.request == in.request, "refused 59");
+    check(out.code == in.code, "refused 59");
+    check(out.channel == in.channel, "refused 59");
+    check(out.value == in.value, "refused 59");
+    check(out.limit == in.limit, "refused 59");
 }
 
-static void payload_57(void)
+static void payload_60(void)
 {
     static held payload, packed;
     softrig_status in, out;
@@ -1095,28 +1128,28 @@ static void payload_57(void)
     in.repeated = 0u;
     in.overruns = 0u;
     hex(&payload, "0000000000000000000000000000000000000000008000800080000000000000000000");
-    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 57");
-    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 57");
-    check(out.request == in.request, "status 57");
-    check(out.state == in.state, "status 57");
-    check(out.code == in.code, "status 57");
-    check(out.uptime_ms == in.uptime_ms, "status 57");
-    check(out.lease_ms == in.lease_ms, "status 57");
-    check(out.step == in.step, "status 57");
-    check(out.coils == in.coils, "status 57");
-    check(out.supply_mv == in.supply_mv, "status 57");
-    check(out.current_ma == in.current_ma, "status 57");
-    check(out.board_decidegc == in.board_decidegc, "status 57");
-    check(out.roll_decideg == in.roll_decideg, "status 57");
-    check(out.pitch_decideg == in.pitch_decideg, "status 57");
-    check(out.down == in.down, "status 57");
-    check(out.dropped == in.dropped, "status 57");
-    check(out.forged == in.forged, "status 57");
-    check(out.repeated == in.repeated, "status 57");
-    check(out.overruns == in.overruns, "status 57");
+    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 60");
+    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 60");
+    check(out.request == in.request, "status 60");
+    check(out.state == in.state, "status 60");
+    check(out.code == in.code, "status 60");
+    check(out.uptime_ms == in.uptime_ms, "status 60");
+    check(out.lease_ms == in.lease_ms, "status 60");
+    check(out.step == in.step, "status 60");
+    check(out.coils == in.coils, "status 60");
+    check(out.supply_mv == in.supply_mv, "status 60");
+    check(out.current_ma == in.current_ma, "status 60");
+    check(out.board_decidegc == in.board_decidegc, "status 60");
+    check(out.roll_decideg == in.roll_decideg, "status 60");
+    check(out.pitch_decideg == in.pitch_decideg, "status 60");
+    check(out.down == in.down, "status 60");
+    check(out.dropped == in.dropped, "status 60");
+    check(out.forged == in.forged, "status 60");
+    check(out.repeated == in.repeated, "status 60");
+    check(out.overruns == in.overruns, "status 60");
 }
 
-static void payload_58(void)
+static void payload_61(void)
 {
     static held payload, packed;
     softrig_status in, out;
@@ -1138,28 +1171,28 @@ static void payload_58(void)
     in.repeated = 65535u;
     in.overruns = 65535u;
     hex(&payload, "ffffffffffffffffffffffffffffffffffffffffff7fff7fff7fffffffffffffffffff");
-    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 58");
-    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 58");
-    check(out.request == in.request, "status 58");
-    check(out.state == in.state, "status 58");
-    check(out.code == in.code, "status 58");
-    check(out.uptime_ms == in.uptime_ms, "status 58");
-    check(out.lease_ms == in.lease_ms, "status 58");
-    check(out.step == in.step, "status 58");
-    check(out.coils == in.coils, "status 58");
-    check(out.supply_mv == in.supply_mv, "status 58");
-    check(out.current_ma == in.current_ma, "status 58");
-    check(out.board_decidegc == in.board_decidegc, "status 58");
-    check(out.roll_decideg == in.roll_decideg, "status 58");
-    check(out.pitch_decideg == in.pitch_decideg, "status 58");
-    check(out.down == in.down, "status 58");
-    check(out.dropped == in.dropped, "status 58");
-    check(out.forged == in.forged, "status 58");
-    check(out.repeated == in.repeated, "status 58");
-    check(out.overruns == in.overruns, "status 58");
+    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 61");
+    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 61");
+    check(out.request == in.request, "status 61");
+    check(out.state == in.state, "status 61");
+    check(out.code == in.code, "status 61");
+    check(out.uptime_ms == in.uptime_ms, "status 61");
+    check(out.lease_ms == in.lease_ms, "status 61");
+    check(out.step == in.step, "status 61");
+    check(out.coils == in.coils, "status 61");
+    check(out.supply_mv == in.supply_mv, "status 61");
+    check(out.current_ma == in.current_ma, "status 61");
+    check(out.board_decidegc == in.board_decidegc, "status 61");
+    check(out.roll_decideg == in.roll_decideg, "status 61");
+    check(out.pitch_decideg == in.pitch_decideg, "status 61");
+    check(out.down == in.down, "status 61");
+    check(out.dropped == in.dropped, "status 61");
+    check(out.forged == in.forged, "status 61");
+    check(out.repeated == in.repeated, "status 61");
+    check(out.overruns == in.overruns, "status 61");
 }
 
-static void payload_59(void)
+static void payload_62(void)
 {
     static held payload, packed;
     softrig_status in, out;
@@ -1181,28 +1214,28 @@ static void payload_59(void)
     in.repeated = 32913u;
     in.overruns = 57380u;
     hex(&payload, "239148c012f0debc24e0230148c07bf3918024e02381484012709148c012f0918024e0");
-    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 59");
-    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 59");
-    check(out.request == in.request, "status 59");
-    check(out.state == in.state, "status 59");
-    check(out.code == in.code, "status 59");
-    check(out.uptime_ms == in.uptime_ms, "status 59");
-    check(out.lease_ms == in.lease_ms, "status 59");
-    check(out.step == in.step, "status 59");
-    check(out.coils == in.coils, "status 59");
-    check(out.supply_mv == in.supply_mv, "status 59");
-    check(out.current_ma == in.current_ma, "status 59");
-    check(out.board_decidegc == in.board_decidegc, "status 59");
-    check(out.roll_decideg == in.roll_decideg, "status 59");
-    check(out.pitch_decideg == in.pitch_decideg, "status 59");
-    check(out.down == in.down, "status 59");
-    check(out.dropped == in.dropped, "status 59");
-    check(out.forged == in.forged, "status 59");
-    check(out.repeated == in.repeated, "status 59");
-    check(out.overruns == in.overruns, "status 59");
+    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 62");
+    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 62");
+    check(out.request == in.request, "status 62");
+    check(out.state == in.state, "status 62");
+    check(out.code == in.code, "status 62");
+    check(out.uptime_ms == in.uptime_ms, "status 62");
+    check(out.lease_ms == in.lease_ms, "status 62");
+    check(out.step == in.step, "status 62");
+    check(out.coils == in.coils, "status 62");
+    check(out.supply_mv == in.supply_mv, "status 62");
+    check(out.current_ma == in.current_ma, "status 62");
+    check(out.board_decidegc == in.board_decidegc, "status 62");
+    check(out.roll_decideg == in.roll_decideg, "status 62");
+    check(out.pitch_decideg == in.pitch_decideg, "status 62");
+    check(out.down == in.down, "status 62");
+    check(out.dropped == in.dropped, "status 62");
+    check(out.forged == in.forged, "status 62");
+    check(out.repeated == in.repeated, "status 62");
+    check(out.overruns == in.overruns, "status 62");
 }
 
-static void payload_60(void)
+static void payload_63(void)
 {
     static held bytes, payload, packed;
     softrig_faults in, out;
@@ -1211,15 +1244,15 @@ static void payload_60(void)
     in.count = 0u;
     in.records = view(hex(&bytes, ""));
     hex(&payload, "000000000000");
-    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 60");
-    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 60");
-    check(out.request == in.request, "faults 60");
-    check(out.start == in.start, "faults 60");
-    check(out.count == in.count, "faults 60");
-    check(same_view(out.records, &bytes), "faults 60");
+    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 63");
+    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 63");
+    check(out.request == in.request, "faults 63");
+    check(out.start == in.start, "faults 63");
+    check(out.count == in.count, "faults 63");
+    check(same_view(out.records, &bytes), "faults 63");
 }
 
-static void payload_61(void)
+static void payload_64(void)
 {
     static held bytes, payload, packed;
     softrig_faults in, out;
@@ -1228,15 +1261,15 @@ static void payload_61(void)
     in.count = 255u;
     in.records = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 61");
-    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 61");
-    check(out.request == in.request, "faults 61");
-    check(out.start == in.start, "faults 61");
-    check(out.count == in.count, "faults 61");
-    check(same_view(out.records, &bytes), "faults 61");
+    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 64");
+    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 64");
+    check(out.request == in.request, "faults 64");
+    check(out.start == in.start, "faults 64");
+    check(out.count == in.count, "faults 64");
+    check(same_view(out.records, &bytes), "faults 64");
 }
 
-static void payload_62(void)
+static void payload_65(void)
 {
     static held bytes, payload, packed;
     softrig_faults in, out;
@@ -1245,15 +1278,15 @@ static void payload_62(void)
     in.count = 35u;
     in.records = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "239180f7e62300017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 62");
-    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 62");
-    check(out.request == in.request, "faults 62");
-    check(out.start == in.start, "faults 62");
-    check(out.count == in.count, "faults 62");
-    check(same_view(out.records, &bytes), "faults 62");
+    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 65");
+    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 65");
+    check(out.request == in.request, "faults 65");
+    check(out.start == in.start, "faults 65");
+    check(out.count == in.count, "faults 65");
+    check(same_view(out.records, &bytes), "faults 65");
 }
 
-static void payload_63(void)
+static void payload_66(void)
 {
     static held bytes, payload, packed;
     softrig_settings in, out;
@@ -1263,16 +1296,16 @@ static void payload_63(void)
     in.board_offset_decidegc = -32768;
     in.resistances = view(hex(&bytes, ""));
     hex(&payload, "0000000080");
-    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 63");
-    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 63");
-    check(out.request == in.request, "settings 63");
-    check(out.source == in.source, "settings 63");
-    check(out.node == in.node, "settings 63");
-    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 63");
-    check(same_view(out.resistances, &bytes), "settings 63");
+    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 66");
+    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 66");
+    check(out.request == in.request, "settings 66");
+    check(out.source == in.source, "settings 66");
+    check(out.node == in.node, "settings 66");
+    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 66");
+    check(same_view(out.resistances, &bytes), "settings 66");
 }
 
-static void payload_64(void)
+static void payload_67(void)
 {
     static held bytes, payload, packed;
     softrig_settings in, out;
@@ -1282,16 +1315,16 @@ static void payload_64(void)
     in.board_offset_decidegc = 32767;
     in.resistances = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "ffffffff7fffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 64");
-    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 64");
-    check(out.request == in.request, "settings 64");
-    check(out.source == in.source, "settings 64");
-    check(out.node == in.node, "settings 64");
-    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 64");
-    check(same_view(out.resistances, &bytes), "settings 64");
+    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 67");
+    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 67");
+    check(out.request == in.request, "settings 67");
+    check(out.source == in.source, "settings 67");
+    check(out.node == in.node, "settings 67");
+    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 67");
+    check(same_view(out.resistances, &bytes), "settings 67");
 }
 
-static void payload_65(void)
+static void payload_68(void)
 {
     static held bytes, payload, packed;
     softrig_settings in, out;
@@ -1301,55 +1334,55 @@ static void payload_65(void)
     in.board_offset_decidegc = 24612;
     in.resistances = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "239148246000017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 65");
-    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 65");
-    check(out.request == in.request, "settings 65");
-    check(out.source == in.source, "settings 65");
-    check(out.node == in.node, "settings 65");
-    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 65");
-    check(same_view(out.resistances, &bytes), "settings 65");
+    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 68");
+    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 68");
+    check(out.request == in.request, "settings 68");
+    check(out.source == in.source, "settings 68");
+    check(out.node == in.node, "settings 68");
+    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 68");
+    check(same_view(out.resistances, &bytes), "settings 68");
 }
 
-static void payload_66(void)
+static void payload_69(void)
 {
     static held bytes, payload, packed;
     softrig_coils in, out;
     in.request = 0u;
     in.channels = view(hex(&bytes, ""));
     hex(&payload, "00");
-    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 66");
-    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 66");
-    check(out.request == in.request, "coils 66");
-    check(same_view(out.channels, &bytes), "coils 66");
+    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 69");
+    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 69");
+    check(out.request == in.request, "coils 69");
+    check(same_view(out.channels, &bytes), "coils 69");
 }
 
-static void payload_67(void)
+static void payload_70(void)
 {
     static held bytes, payload, packed;
     softrig_coils in, out;
     in.request = 255u;
     in.channels = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 67");
-    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 67");
-    check(out.request == in.request, "coils 67");
-    check(same_view(out.channels, &bytes), "coils 67");
+    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 70");
+    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 70");
+    check(out.request == in.request, "coils 70");
+    check(same_view(out.channels, &bytes), "coils 70");
 }
 
-static void payload_68(void)
+static void payload_71(void)
 {
     static held bytes, payload, packed;
     softrig_coils in, out;
     in.request = 35u;
     in.channels = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "2300017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 68");
-    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 68");
-    check(out.request == in.request, "coils 68");
-    check(same_view(out.channels, &bytes), "coils 68");
+    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 71");
+    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 71");
+    check(out.request == in.request, "coils 71");
+    check(same_view(out.channels, &bytes), "coils 71");
 }
 
-static void payload_69(void)
+static void payload_72(void)
 {
     static held payload, packed;
     softrig_event in, out;
@@ -1360,17 +1393,17 @@ static void payload_69(void)
     in.value = -2147483647 - 1;
     in.now_ms = 0u;
     hex(&payload, "0000000000000000008000000000");
-    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 69");
-    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 69");
-    check(out.event == in.event, "event 69");
-    check(out.code == in.code, "event 69");
-    check(out.step == in.step, "event 69");
-    check(out.channel == in.channel, "event 69");
-    check(out.value == in.value, "event 69");
-    check(out.now_ms == in.now_ms, "event 69");
+    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 72");
+    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 72");
+    check(out.event == in.event, "event 72");
+    check(out.code == in.code, "event 72");
+    check(out.step == in.step, "event 72");
+    check(out.channel == in.channel, "event 72");
+    check(out.value == in.value, "event 72");
+    check(out.now_ms == in.now_ms, "event 72");
 }
 
-static void payload_70(void)
+static void payload_73(void)
 {
     static held payload, packed;
     softrig_event in, out;
@@ -1381,17 +1414,17 @@ static void payload_70(void)
     in.value = 2147483647;
     in.now_ms = 4294967295u;
     hex(&payload, "ffffffffffffffffff7fffffffff");
-    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 70");
-    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 70");
-    check(out.event == in.event, "event 70");
-    check(out.code == in.code, "event 70");
-    check(out.step == in.step, "event 70");
-    check(out.channel == in.channel, "event 70");
-    check(out.value == in.value, "event 70");
-    check(out.now_ms == in.now_ms, "event 70");
+    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 73");
+    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 73");
+    check(out.event == in.event, "event 73");
+    check(out.code == in.code, "event 73");
+    check(out.step == in.step, "event 73");
+    check(out.channel == in.channel, "event 73");
+    check(out.value == in.value, "event 73");
+    check(out.now_ms == in.now_ms, "event 73");
 }
 
-static void payload_71(void)
+static void payload_74(void)
 {
     static held payload, packed;
     softrig_event in, out;
@@ -1402,17 +1435,17 @@ static void payload_71(void)
     in.value = 1727496337;
     in.now_ms = 3454992675u;
     hex(&payload, "23918024e0239180f7662301efcd");
-    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 71");
-    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 71");
-    check(out.event == in.event, "event 71");
-    check(out.code == in.code, "event 71");
-    check(out.step == in.step, "event 71");
-    check(out.channel == in.channel, "event 71");
-    check(out.value == in.value, "event 71");
-    check(out.now_ms == in.now_ms, "event 71");
+    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 74");
+    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 74");
+    check(out.event == in.event, "event 74");
+    check(out.code == in.code, "event 74");
+    check(out.step == in.step, "event 74");
+    check(out.channel == in.channel, "event 74");
+    check(out.value == in.value, "event 74");
+    check(out.now_ms == in.now_ms, "event 74");
 }
 
-static void payload_72(void)
+static void payload_75(void)
 {
     static held bytes, payload, packed;
     softrig_telemetry in, out;
@@ -1422,54 +1455,54 @@ static void payload_72(void)
     in.now_ms = 0u;
     in.values = view(hex(&bytes, ""));
     hex(&payload, "00000000000000");
-    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 72");
-    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 72");
-    check(out.slot == in.slot, "telemetry 72");
-    check(out.form == in.form, "telemetry 72");
-    check(out.count == in.count, "telemetry 72");
-    check(out.now_ms == in.now_ms, "telemetry 72");
-    check(same_view(out.values, &bytes), "telemetry 72");
+    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 75");
+    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 75");
+    check(out.slot == in.slot, "telemetry 75");
+    check(out.form == in.form, "telemetry 75");
+    check(out.count == in.count, "telemetry 75");
+    check(out.now_ms == in.now_ms, "telemetry 75");
+    check(same_view(out.values, &bytes), "telemetry 75");
 }
 
-static void payload_73(void)
+static void payload_76(void)
 {
     static held bytes, payload, packed;
     softrig_telemetry in, out;
-    in.slot = 3u;
+    in.slot = 4u;
     in.form = 255u;
     in.count = 255u;
     in.now_ms = 4294967295u;
     in.values = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
-    hex(&payload, "03ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 73");
-    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 73");
-    check(out.slot == in.slot, "telemetry 73");
-    check(out.form == in.form, "telemetry 73");
-    check(out.count == in.count, "telemetry 73");
-    check(out.now_ms == in.now_ms, "telemetry 73");
-    check(same_view(out.values, &bytes), "telemetry 73");
+    hex(&payload, "04ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
+    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 76");
+    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 76");
+    check(out.slot == in.slot, "telemetry 76");
+    check(out.form == in.form, "telemetry 76");
+    check(out.count == in.count, "telemetry 76");
+    check(out.now_ms == in.now_ms, "telemetry 76");
+    check(same_view(out.values, &bytes), "telemetry 76");
 }
 
-static void payload_74(void)
+static void payload_77(void)
 {
     static held bytes, payload, packed;
     softrig_telemetry in, out;
-    in.slot = 3u;
+    in.slot = 0u;
     in.form = 145u;
     in.count = 72u;
     in.now_ms = 2042486820u;
     in.values = view(hex(&bytes, "00017f80ff0053544f5000"));
-    hex(&payload, "03914824e0bd7900017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 74");
-    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 74");
-    check(out.slot == in.slot, "telemetry 74");
-    check(out.form == in.form, "telemetry 74");
-    check(out.count == in.count, "telemetry 74");
-    check(out.now_ms == in.now_ms, "telemetry 74");
-    check(same_view(out.values, &bytes), "telemetry 74");
+    hex(&payload, "00914824e0bd7900017f80ff0053544f5000");
+    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 77");
+    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 77");
+    check(out.slot == in.slot, "telemetry 77");
+    check(out.form == in.form, "telemetry 77");
+    check(out.count == in.count, "telemetry 77");
+    check(out.now_ms == in.now_ms, "telemetry 77");
+    check(same_view(out.values, &bytes), "telemetry 77");
 }
 
-static void payload_75(void)
+static void payload_78(void)
 {
     static held payload, packed;
     softrig_beacon in, out;
@@ -1479,16 +1512,16 @@ static void payload_75(void)
     in.supply_mv = 0u;
     in.current_ma = 0u;
     hex(&payload, "0000000000000000");
-    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 75");
-    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 75");
-    check(out.state == in.state, "beacon 75");
-    check(out.code == in.code, "beacon 75");
-    check(out.step == in.step, "beacon 75");
-    check(out.supply_mv == in.supply_mv, "beacon 75");
-    check(out.current_ma == in.current_ma, "beacon 75");
+    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 78");
+    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 78");
+    check(out.state == in.state, "beacon 78");
+    check(out.code == in.code, "beacon 78");
+    check(out.step == in.step, "beacon 78");
+    check(out.supply_mv == in.supply_mv, "beacon 78");
+    check(out.current_ma == in.current_ma, "beacon 78");
 }
 
-static void payload_76(void)
+static void payload_79(void)
 {
     static held payload, packed;
     softrig_beacon in, out;
@@ -1498,16 +1531,16 @@ static void payload_76(void)
     in.supply_mv = 65535u;
     in.current_ma = 65535u;
     hex(&payload, "ffffffffffffffff");
-    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 76");
-    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 76");
-    check(out.state == in.state, "beacon 76");
-    check(out.code == in.code, "beacon 76");
-    check(out.step == in.step, "beacon 76");
-    check(out.supply_mv == in.supply_mv, "beacon 76");
-    check(out.current_ma == in.current_ma, "beacon 76");
+    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 79");
+    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 79");
+    check(out.state == in.state, "beacon 79");
+    check(out.code == in.code, "beacon 79");
+    check(out.step == in.step, "beacon 79");
+    check(out.supply_mv == in.supply_mv, "beacon 79");
+    check(out.current_ma == in.current_ma, "beacon 79");
 }
 
-static void payload_77(void)
+static void payload_80(void)
 {
     static held payload, packed;
     softrig_beacon in, out;
@@ -1517,16 +1550,16 @@ static void payload_77(void)
     in.supply_mv = 61458u;
     in.current_ma = 32913u;
     hex(&payload, "239148c012f09180");
-    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 77");
-    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 77");
-    check(out.state == in.state, "beacon 77");
-    check(out.code == in.code, "beacon 77");
-    check(out.step == in.step, "beacon 77");
-    check(out.supply_mv == in.supply_mv, "beacon 77");
-    check(out.current_ma == in.current_ma, "beacon 77");
+    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 80");
+    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 80");
+    check(out.state == in.state, "beacon 80");
+    check(out.code == in.code, "beacon 80");
+    check(out.step == in.step, "beacon 80");
+    check(out.supply_mv == in.supply_mv, "beacon 80");
+    check(out.current_ma == in.current_ma, "beacon 80");
 }
 
-static void payload_78(void)
+static void payload_81(void)
 {
     static held payload, packed;
     softrig_beacon_coils in, out;
@@ -1536,16 +1569,16 @@ static void payload_78(void)
     in.temperature_a_decidegc = -32768;
     in.temperature_b_decidegc = -32768;
     hex(&payload, "00000000800080");
-    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 78");
-    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 78");
-    check(out.group == in.group, "beacon_coils 78");
-    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 78");
-    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 78");
-    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 78");
-    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 78");
+    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 81");
+    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 81");
+    check(out.group == in.group, "beacon_coils 81");
+    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 81");
+    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 81");
+    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 81");
+    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 81");
 }
 
-static void payload_79(void)
+static void payload_82(void)
 {
     static held payload, packed;
     softrig_beacon_coils in, out;
@@ -1555,16 +1588,16 @@ static void payload_79(void)
     in.temperature_a_decidegc = 32767;
     in.temperature_b_decidegc = 32767;
     hex(&payload, "0f6464ff7fff7f");
-    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 79");
-    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 79");
-    check(out.group == in.group, "beacon_coils 79");
-    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 79");
-    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 79");
-    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 79");
-    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 79");
+    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 82");
+    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 82");
+    check(out.group == in.group, "beacon_coils 82");
+    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 82");
+    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 82");
+    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 82");
+    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 82");
 }
 
-static void payload_80(void)
+static void payload_83(void)
 {
     static held payload, packed;
     softrig_beacon_coils in, out;
@@ -1574,16 +1607,16 @@ static void payload_80(void)
     in.temperature_a_decidegc = 24612;
     in.temperature_b_decidegc = -32477;
     hex(&payload, "031e4124602381");
-    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 80");
-    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 80");
-    check(out.group == in.group, "beacon_coils 80");
-    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 80");
-    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 80");
-    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 80");
-    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 80");
+    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 83");
+    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 83");
+    check(out.group == in.group, "beacon_coils 83");
+    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 83");
+    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 83");
+    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 83");
+    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 83");
 }
 
-static void payload_81(void)
+static void payload_84(void)
 {
     static held payload, packed;
     softrig_clock in, out;
@@ -1591,14 +1624,14 @@ static void payload_81(void)
     in.received_ms = 0u;
     in.sent_ms = 0u;
     hex(&payload, "000000000000000000000000");
-    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 81");
-    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 81");
-    check(out.host_us == in.host_us, "clock 81");
-    check(out.received_ms == in.received_ms, "clock 81");
-    check(out.sent_ms == in.sent_ms, "clock 81");
+    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 84");
+    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 84");
+    check(out.host_us == in.host_us, "clock 84");
+    check(out.received_ms == in.received_ms, "clock 84");
+    check(out.sent_ms == in.sent_ms, "clock 84");
 }
 
-static void payload_82(void)
+static void payload_85(void)
 {
     static held payload, packed;
     softrig_clock in, out;
@@ -1606,14 +1639,14 @@ static void payload_82(void)
     in.received_ms = 4294967295u;
     in.sent_ms = 4294967295u;
     hex(&payload, "ffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 82");
-    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 82");
-    check(out.host_us == in.host_us, "clock 82");
-    check(out.received_ms == in.received_ms, "clock 82");
-    check(out.sent_ms == in.sent_ms, "clock 82");
+    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 85");
+    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 85");
+    check(out.host_us == in.host_us, "clock 85");
+    check(out.received_ms == in.received_ms, "clock 85");
+    check(out.sent_ms == in.sent_ms, "clock 85");
 }
 
-static void payload_83(void)
+static void payload_86(void)
 {
     static held payload, packed;
     softrig_clock in, out;
@@ -1621,11 +1654,11 @@ static void payload_83(void)
     in.received_ms = 3168727058u;
     in.sent_ms = 2042486820u;
     hex(&payload, "2301efcd12f0debc24e0bd79");
-    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 83");
-    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 83");
-    check(out.host_us == in.host_us, "clock 83");
-    check(out.received_ms == in.received_ms, "clock 83");
-    check(out.sent_ms == in.sent_ms, "clock 83");
+    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 86");
+    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 86");
+    check(out.host_us == in.host_us, "clock 86");
+    check(out.received_ms == in.received_ms, "clock 86");
+    check(out.sent_ms == in.sent_ms, "clock 86");
 }
 
 int main(void)
@@ -1714,6 +1747,9 @@ int main(void)
     payload_81();
     payload_82();
     payload_83();
+    payload_84();
+    payload_85();
+    payload_86();
     { static const whole told = {0, 1, 0, 0, 0, 0u, 0u, 0, "", "239180f7e62301efcd12f0debc24e0bd79", "20010000239180f7e62301efcd12f0debc24e0bd7992d7a9ee", "0320010116239180f7e62301efcd12f0debc24e0bd7992d7a9ee00"}; frame(&told, "hello"); }
     { static const whole told = {0, 2, 0, 0, 0, 0u, 0u, 1, "", "2301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000", "200200002301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f500032ae7a7c", "03200201352301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7905017f80ff0553544f500532ae7a7c00"}; frame(&told, "identity"); }
     { static const whole told = {2, 2, 0, 0, 9, 0u, 0u, 1, "", "2301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000", "22020000092301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000435cac63", "0322020136092301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7905017f80ff0553544f5005435cac6300"}; frame(&told, "identity"); }
@@ -1725,7 +1761,7 @@ int main(void)
     { static const whole told = {5, 20, 3, 255, 0, 894227724u, 3u, 0, "d6ed30e4cc2152c40d9dbbcb4fe56153db2fd42554bf2abf82b5c5c187299ab2", "2301efcd72039180", "251403ff2301efcd72039180d0467ec253bf65cdae60f680", "19251403ff2301efcd72039180d0467ec253bf65cdae60f68000"}; frame(&told, "fire"); }
     { static const whole told = {7, 20, 3, 255, 1, 894227724u, 259u, 0, "d6ed30e4cc2152c40d9dbbcb4fe56153db2fd42554bf2abf82b5c5c187299ab2", "2301efcd72039180", "271403ff012301efcd720391804dfa0d0598e99bb39d61bcb9", "1a271403ff012301efcd720391804dfa0d0598e99bb39d61bcb900"}; frame(&told, "fire"); }
     { static const whole told = {5, 65, 112, 1, 0, 894227724u, 70000u, 1, "d6ed30e4cc2152c40d9dbbcb4fe56153db2fd42554bf2abf82b5c5c187299ab2", "2391802412f0de3c24e0bdf9", "254170012391802412f0de3c24e0bdf93ef6afbdd42e33a0612b719e", "1d254170012391802412f0de3c24e0bdf93ef6afbdd42e33a0612b719e00"}; frame(&told, "refused"); }
-    { static const whole told = {0, 80, 17, 0, 0, 3237998146u, 17u, 1, "", "03914824e0bd7900017f80ff0053544f5000", "2050110003914824e0bd7900017f80ff0053544f5000eeb7c341", "042050110803914824e0bd7905017f80ff0553544f5005eeb7c34100"}; frame(&told, "telemetry"); }
+    { static const whole told = {0, 80, 17, 0, 0, 3237998146u, 17u, 1, "", "00914824e0bd7900017f80ff0053544f5000", "2050110000914824e0bd7900017f80ff0053544f50008c6a45ab", "042050110107914824e0bd7905017f80ff0553544f50058c6a45ab00"}; frame(&told, "telemetry"); }
     { static const whole told = {1, 33, 1, 2, 0, 894227724u, 1u, 0, "", "0000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000", "2121010200000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000000005454319b", "052121010201010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101055454319b00"}; frame(&told, "code"); }
     { static const whole told = {1, 33, 1, 2, 0, 894227724u, 1u, 0, "", "0000010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101", "21210102000001010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010149ff473a", "052121010201ef01010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010149ff473a00"}; frame(&told, "code"); }
     { static const whole told = {1, 33, 1, 2, 0, 894227724u, 1u, 0, "", "0000ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff", "212101020000ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffc0130b99", "052121010201efffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffc0130b9900"}; frame(&told, "code"); }
@@ -1750,7 +1786,7 @@ int main(void)
     stream("11211403ff2301efcd72039180aaaed71000", "", 0, "made for another dictionary");
     stream("11211403ff2301efcd72039180f0549d2500", "", 0, "sealed like a greeting");
     stream("11211403ff2301efcd72039180622106d500", "", 0, "sealed like an open frame");
-    stream("042050110803914824e0bd7905017f80ff0553544f50051c56c82000", "", 0, "an open frame sealed like one of the session");
+    stream("042050110107914824e0bd7905017f80ff0553544f50057e8b4eca00", "", 0, "an open frame sealed like one of the session");
     stream("11111403ff2301efcd720391803f0996aa00", "", 0, "of version 1");
     stream("11291403ff2301efcd72039180c549b3b800", "", 0, "with the reserved flag");
     stream("09221403ff028394fd00", "", 0, "says that a node follows, and nothing does");
@@ -1776,7 +1812,7 @@ int main(void)
     segments(139590640u, 20, 126, 126, 0, 1, "201401022301efcd72039180a4875646", "14c010201401022301efcd72039180a48756460000", "CAN fire");
     segments(142871560u, 33, 3, 1, 0, 0, "202101020000010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101440f303a", "088020210102000001080101010101010101080201010101010101080301010101010101080401010101010101080501010101010101080601010101010101080701010101010101080801010101010101080901010101010101080a01010101010101080b01010101010101080c01010101010101080d01010101010101080e01010101010101080f01010101010101081001010101010101081101010101010101081201010101010101081301010101010101081401010101010101081501010101010101081601010101010101081701010101010101081801010101010101081901010101010101081a01010101010101081b01010101010101081c01010101010101081d01010101010101081e01010101010101081f0101010101010108200101010101010108210101010101010107620101440f303a", "CAN code");
     segments(142871560u, 33, 3, 1, 0, 1, "202101020000010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101440f303a", "4080f4202101020000010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010140010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101014002010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101404301010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101010101440f303a00000000000000", "CAN code");
-    segments(423761912u, 80, 5, 127, 1, 0, "2050010203914824e0bd7900017f80ff0053544f50003a1ab1d5", "088020500102039148080124e0bd7900017f080280ff0053544f500643003a1ab1d5", "CAN telemetry");
+    segments(423761912u, 80, 5, 127, 1, 0, "2050010200914824e0bd7900017f80ff0053544f500058c7373f", "088020500102009148080124e0bd7900017f080280ff0053544f5006430058c7373f", "CAN telemetry");
     segments(269095992u, 2, 5, 7, 1, 1, "200201022301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000bfa18b39", "408047200201022301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff000c4153544f5000bfa18b390000", "CAN identity");
     segments(202774520u, 5, 5, 127, 1, 0, "2005010223918024e0bd7948c07bf3e7b320b6", "088020050102239180080124e0bd7948c07b0642f3e7b320b6", "CAN stopped");
     key("000102030405060708090a0b0c0d0e0f101112131415161718191a1b1c1d1e1f", "0278563412000000000403020108070605", 2711790500u, 2779162536u, 3237998146u, "d6ed30e4cc2152c40d9dbbcb4fe56153db2fd42554bf2abf82b5c5c187299ab2", 1322359566u, 1529411322u, "251403ff2301efcd72039180", 259u, "f7a1b0eb22573f9a");

@@ -64,7 +64,8 @@ def command(
         if ours:
             face.subscribe(every, names or None, on_change)
         else:
-            note("another session holds the lease: only the usual variables are seen, when it asks for them")
+            note("this session may only watch: the usual variables, each 50 ms at most")
+            face.overhear(every)
         count = _watched(face, FOR_EVER_MS if lasting is None else lasting, as_json or not sys.stdout.isatty())
         missed = sum(face.missed().values())
         if ours:
