@@ -357,3 +357,15 @@ def test_what_the_bus_cost_is_among_the_variables(robot, bus, bench):
     assert before[-1] == {"can_state": 1, "can_overflows": 0, "can_refused": 0, "can_bus_offs": 0}
     assert after[-1]["can_bus_offs"] > 0
     assert after[-1]["can_state"] == 1
+
+
+def test_beacons_keep_their_period_beside_telemetry(robot, bench):
+    robot.subscribe(50)
+    stranger = beside(bench)
+    records = [each for each in robot.listen(2000) if isinstance(each, Telemetry)]
+    kinds = [frame.id >> 18 & 255 for frame in stranger.received if frame.extended]
+
+    assert 39 <= len(records) <= 41
+    assert 19 <= kinds.count(messages.BEACON.number) <= 21
+    assert kinds.count(messages.BEACON_COILS.number) >= 75  # every 20 ms, but for those that a beacon puts off
+    assert robot.statistics()["telemetry_missed"] <= 1
