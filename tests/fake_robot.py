@@ -159,7 +159,7 @@ class FakeRobot:
         self._post(
             messages.IDENTITY, session=order.session, boot=self.boot, uptime_ms=self.uptime_ms,
             dictionary_crc=self.seed, dictionary_bytes=len(self.dictionary), version=frames.VERSION,
-            state=self.state, role=self.role, node=0, secured=0, slots=16, bytes=448, byte_ns=0,
+            state=self.state, role=self.role, node=0, secured=0, slots=32, bytes=960, byte_ns=0,
             holder=self.holder, step=0,
             nonce_a=0, nonce_b=0, proof_a=0, proof_b=0, firmware=b"softrig 0.1.0",
         )  # fmt: skip

@@ -180,7 +180,7 @@ class Table:
         self.sensor = Imu()
         self.powered = False
         self.serial = b"the table"
-        self.credit_bytes = 448
+        self.credit_bytes = 960
         self.byte_ns = 86_805
         self.beats = 0
         self.closed = True

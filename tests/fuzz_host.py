@@ -79,7 +79,7 @@ def identity(state: int, more: int) -> bytes:
     return messages.IDENTITY.pack(
         session=SESSION, boot=1, uptime_ms=1000 + more, dictionary_crc=DICTIONARY_CRC ^ (more >> 7),
         dictionary_bytes=len(DICTIONARY), version=frames.VERSION, state=state, role=more & 1, node=0,
-        secured=more >> 1 & 3, slots=16, bytes=448, byte_ns=86_805, holder=0, step=0, nonce_a=3, nonce_b=4,
+        secured=more >> 1 & 3, slots=16, bytes=960, byte_ns=86_805, holder=0, step=0, nonce_a=3, nonce_b=4,
         proof_a=0, proof_b=0, firmware=b"0.1.0",
     )  # fmt: skip
 

@@ -116,7 +116,7 @@ class Table:
 
     powered = False
     serial = b"the table"
-    credit_bytes = 448
+    credit_bytes = 960
     byte_ns = 86_805
 
     def open(self, path, mode):

@@ -50,7 +50,7 @@ class Nothing:
 class Table:
     """A board without its pins."""
 
-    credit_bytes, byte_ns, serial = 448, 86_805, b"one"
+    credit_bytes, byte_ns, serial = 960, 86_805, b"one"
 
     def __init__(self, profile) -> None:
         mv, mohm = profile.supply.nominal_mv, profile.coil.resistance_mohm + profile.coil.wiring_mohm
