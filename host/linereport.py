@@ -32,7 +32,8 @@ def line_lines(fields: Fields) -> Iterator[str]:
     yield f"  line             {traffic}, {link['frames_damaged']} damaged, {missed}"
     if link.get("clock_bound_ms") is not None:
         drift = f"drifts {link['clock_drift_ppm']:.0f} ppm, known to {link['clock_bound_ms']:.1f} ms"
-        yield f"  robot's clock    {link['clock_offset_ms'] / 1000:.3f} s ahead of the host's, {drift}"
+        offset_s = link["clock_offset_ms"] / 1000
+        yield f"  robot's clock    {abs(offset_s):.3f} s {'ahead of' if offset_s > 0 else 'behind'} the host's, {drift}"
 
 
 def _by_slot(missed: dict[str, int]) -> str:
