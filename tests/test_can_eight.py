@@ -17,6 +17,8 @@ BUSES_US = 2_500  # that the step which switches spends on its buses before it d
 LEASE_MS = 5_000
 HEAT_MS = 200
 SHORT_MS = 10
+FRAME_US = 320  # at most, of eight bytes with all that is stuffed
+PIECE = bytes(200)
 PHASE_US = 170  # thirty of them are a control step
 
 
@@ -50,7 +52,10 @@ class Eight:
 
     def order(self, message, **values) -> None:
         """Give all the same order at the same time, and wait for all answers."""
-        for node, seq in self.ask(message, **values).items():
+        asked = self.ask(message, **values)
+        while not all(seq in self.robots[node].talk.session.hearing.answers.said for node, seq in asked.items()):
+            self.run_ms(5)
+        for node, seq in asked.items():
             self.robots[node].talk.answer(seq)
 
     def arm(self) -> None:
@@ -162,6 +167,31 @@ def test_all_start_at_any_time_at_which_the_word_is_said_however_busy_their_line
     eight.disarm()
 
     assert max(spread_us) <= STEP_US + PWM_US, spread_us
+
+
+def test_one_stop_switches_all_off_within_one_control_step_however_full_the_bus_is(eight):
+    eight.order(messages.SUBSCRIBE, slot=0, period_ms=50, on_change=0, variables=b"")
+    late_us = []
+    for phase in range(3):
+        eight.arm()
+        eight.order(messages.FIRE, coils=2, duty_permille=500, hold_ms=3_000)
+        for robot in eight.robots.values():
+            whole = program.header(2 * PIECE, robot.profile.crc, 0)
+            robot.talk.ask(messages.PROGRAM, header=whole[: program.HEADER_BYTES])
+        eight.ask(messages.CODE, offset=0, code=PIECE)
+        last = eight.ask(messages.CODE, offset=len(PIECE), code=PIECE)
+        eight.run_ms(20)
+        eight.rest_us(7 * phase * PHASE_US)
+
+        asked_us = round(eight.bus.now_s() * 1e6)
+        assert not any(seq in eight.robots[node].talk.session.hearing.answers.said for node, seq in last.items())
+        eight.all.write(STOP)
+        eight.run_ms(300)
+        late_us += [bench.coil("B").off_at_us - asked_us for bench in eight.benches.values()]
+    eight.order(messages.SUBSCRIBE, slot=0, period_ms=0, on_change=0, variables=b"")
+
+    assert max(late_us) <= STEP_US + BUSES_US + 3 * FRAME_US, late_us
+    assert sum(us > 0 for us in late_us) >= len(late_us) // 2, late_us  # others were off by then, to be measured
 
 
 def test_one_stop_switches_the_coils_of_all_off_within_one_control_step(eight):
