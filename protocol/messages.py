@@ -345,7 +345,7 @@ TELEMETRY = Message(
 BEACON = Message(
     0x58, "beacon",  # On CAN only, ten times a second to all: a frame by itself, without segment byte, head and CRC.
     Field("state", "B"),  # State of the robot. [STATES]
-    Field("code", "B"),  # Last fault, see the table of codes; 0: none since boot.
+    Field("code", "B"),  # Last fault, 0: none since boot. [CODES]
     Field("step", "H"),  # Step of the program, 0: none.
     Field("supply_mv", "H"),  # Supply voltage at the coils' rail.
     Field("current_ma", "H"),  # Supply current.

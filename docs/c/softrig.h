@@ -1567,7 +1567,7 @@ static inline int softrig_unpack_telemetry(softrig_telemetry *out, softrig_bytes
 #define SOFTRIG_BEACON_BYTES 8u
 typedef struct softrig_beacon {
     uint8_t state; /* State of the robot. SOFTRIG_STATES_... */
-    uint8_t code; /* Last fault, see the table of codes; 0: none since boot. */
+    uint8_t code; /* Last fault, 0: none since boot. SOFTRIG_CODES_... */
     uint16_t step; /* Step of the program, 0: none. */
     uint16_t supply_mv; /* Supply voltage at the coils' rail. */
     uint16_t current_ma; /* Supply current. */
