@@ -281,11 +281,17 @@ def test_a_frame_that_is_sent_again_widens_the_distance_and_many_that_are_not_na
 
     for _ in range(5):
         lane.notice(again)
+    waiting = lane._gap_s
+    for _ in range(5):
+        lane.notice(again)
+        lane.add(frame)
+        lane.pop(0)
     widest = lane._gap_s
     for at in range(400):
         lane.add(frame)
         lane.pop(at / 100)
 
+    assert waiting == GAP_S  # the first has not even left
     assert widest == GAP_MAX_S
     assert lane._gap_s == GAP_S
 
