@@ -168,6 +168,8 @@ class CanPort:
         chip = self._chip
         while chip.receive():
             self._heard = True
+            if chip.remote:
+                continue  # it carries nothing: what stands in the buffer is of the frame before it
             if chip.extended:
                 if not self._received.add(chip.identifier, chip.data, chip.length):
                     self.overflows += 1

@@ -60,7 +60,7 @@ class Wires:
                 stop = STOP
             elif body.kind == SYNC.number:
                 word = b"\x00" + SYNC_LINE  # whatever half of a frame came before it
-            elif len(self._taken) < WAITING_MAX:
+            elif body.host != SERIAL and len(self._taken) < WAITING_MAX:
                 self._taken.append(body)
         return stop + word + self._turn(urgent)
 

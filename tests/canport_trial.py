@@ -31,6 +31,7 @@ class Chip:
         self.place = 0
         self.identifier = self.length = self.sent = self.sum = 0
         self.extended = True
+        self.remote = False
         self.data = bytearray(8)
 
     def accept(self, buffer, mask, identifiers, extended):
