@@ -14,7 +14,7 @@ from binascii import crc32
 from collections.abc import Iterable
 from dataclasses import MISSING, dataclass, fields
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_type_hints
 
 from host.errors import BadRequest, Mismatch
 from protocol import program
@@ -141,11 +141,14 @@ def read_profile(text: bytes) -> Profile:
             crc=crc32(text),
             imu=data.get("imu"),
         )
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except (KeyError, TypeError, ValueError, AttributeError, OverflowError, RecursionError) as error:
         raise Mismatch(f"the robot's profile cannot be read ({error}): its firmware is of another version") from error
 
 
 def _taken(kind: type[T], data: dict[str, Any]) -> T:
     """Return a `kind` made of the entries it knows; a newer robot may send more."""
     names = [field.name for field in fields(kind) if field.name in data or field.default is MISSING]  # type: ignore[arg-type]
+    for name, wanted in get_type_hints(kind).items():
+        if name in names and type(data[name]) is not wanted:
+            raise TypeError(f"{name} is {data[name]!r}")
     return kind(**{name: data[name] for name in names})

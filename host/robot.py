@@ -21,7 +21,7 @@ from host.errors import BadRequest, Interrupted, LinkLost, Silent, SoftrigError
 from host.link import Link
 from host.orders import Orders
 from host.outages import Interruption
-from host.records import Event, Record, Stopped, Telemetry
+from host.records import Event, Record, Stopped, Telemetry, state_name
 from protocol import causes, messages
 
 PATIENCE_MS = 1500  # for the lease of a host that has gone
@@ -115,7 +115,7 @@ class Robot(Orders):
             "dictionary": f"{identity.dictionary_crc:08x}",
             "boot": identity.boot,
             "session": self.talk.session.number,
-            "state": messages.STATES[identity.state],
+            "state": state_name(identity.state),
             "paired": identity.secured != messages.UNPAIRED,
             "may_arm": not self.talk.session.mute,
             "coils": list(profile.labels),
