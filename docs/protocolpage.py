@@ -269,7 +269,7 @@ def bounds(table: Table) -> str:
         ("payload", f"{frames.PAYLOAD_MAX} bytes"),
         ("memory of a decoder", f"{frames.BODY_MAX + 1} bytes"),
         ("frames on the way, each direction", f"{flight.WINDOW}"),
-        ("frames that wait to be sent, each direction", f"{link.QUEUE_MAX} reliable, {link.QUEUE_MAX} posted"),
+        ("frames that wait to be sent, each direction", f"{link.QUEUE_MAX} reliable, {link.POSTS_MAX} posted"),
         ("credit of a robot on a serial line", f"{exchange.CREDIT_BYTES} bytes"),
         ("dictionary", "65535 bytes, read in pages"),
         ("subscriptions", f"{subscriptions.SLOTS}, each at most {subscriptions.VALUES_MAX} bytes a record"),
