@@ -24,6 +24,7 @@ ALIVE_BYTES = 7
 LAPS = 4  # of its 256 numbers that a posted frame may be ahead when all before it were lost
 _POSTED_LAPS = (0, -1) + tuple(range(1, LAPS))  # in the order of what is likely; -1: it was heard before
 LATE = 16  # a posted frame that seems so much older than the newest is: it was late on its way, or comes twice
+TAGS_MAX = 24  # looked at in one read: more than a line brings in a control step, and all the work that forgers make
 PAST_MAX = 8  # sessions whose end is remembered
 
 Received = namedtuple("Received", ("kind", "seq", "payload"))
@@ -47,6 +48,7 @@ class Link:
         self._device = device
         self._addressed = node != 0 and not device
         self._past = []
+        self._tags_left = TAGS_MAX
         self.session = 0
         self.begin(dictionary_crc, 0)
 
@@ -143,6 +145,7 @@ class Link:
     def receive(self, data: bytes, now_ms: int) -> list[Received]:
         """Take received bytes; return what they deliver, in order, each reliable frame exactly once."""
         delivered = []
+        self._tags_left = TAGS_MAX
         begun = False  # the session that was offered when these bytes came: they were decoded all at once
         for frame in self.decoder.feed(data):
             flags, kind, seq, _, node, payload, _, offered = frame
@@ -308,8 +311,9 @@ class Link:
         return -1
 
     def _is_true(self, frame, number: int, key: bytes) -> bool:
-        if not frame.flags & frames.SEALED or number < 0:
+        if not frame.flags & frames.SEALED or number < 0 or not self._tags_left:
             return False
+        self._tags_left -= 1
         body = frame.body[: -frames.TAG_BYTES]
         return secret.same(frame.body[-frames.TAG_BYTES :], secret.tag(key, not self._device, number, body))
 

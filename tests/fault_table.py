@@ -40,7 +40,7 @@ name = "line-lose:20"   # of 1000 bytes
 at_ms = 0
 for_ms = 3000
 """
-EXIT_CODES = {"done": 0, "guard": 1, "refused": 4, "fault": 6, "link lost": 7}
+EXIT_CODES = {"done": 0, "guard": 1, "refused": 4, "fault": 6, "lease": 7, "link lost": 7}
 ANY = "any"  # code: none, or that of whatever a wrong bit looks like
 
 

@@ -58,7 +58,14 @@ def test_a_body_that_is_none_from_the_start_is_a_mistake_of_its_numbers():
 
 
 def test_a_host_is_told_that_the_body_came_apart():
-    with Robot(open_link("sim:circular?set=start.settle_s:0&set=coils.wire_diameter_mm:10")) as robot:
-        with pytest.raises(LinkLost, match="the body of the bench came apart"):
-            robot.connect()
-            list(robot.listen(1000))
+    robot = Robot(open_link("sim:circular?set=start.settle_s:0&set=coils.wire_diameter_mm:10"))
+
+    with pytest.raises(LinkLost, match="the body of the bench came apart"):
+        watch(robot)
+
+
+def watch(robot):
+    """Connect, and listen for a second."""
+    with robot:
+        robot.connect()
+        list(robot.listen(1000))

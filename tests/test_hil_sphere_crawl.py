@@ -96,8 +96,8 @@ def test_coils_stay_within_their_temperature_and_force(ball):
 def test_the_mirrored_script_mirrors_the_motion(ball):
     """But for the order in which coils that are on together are measured, 2 ms each.
 
-    B rocks on and doubles such a difference with every step (without the measuring A mirrors all eight to 0.01 mm, B the
-    first three to 0.01 and the last to 0.3): its last two steps count in the sum only.
+    B rocks on and doubles such a difference with every step (without the measuring A mirrors all eight to 0.01 mm, B
+    the first three to 0.01 and the last to 0.3): its last two steps count in the sum only.
     """
     forward, back = crawl(ball).steps(0), crawl(ball, script="crawl-back").steps(0)
 

@@ -276,7 +276,7 @@ def test_a_session_on_offer_waits_while_it_may_not_begin():
 
 
 def test_the_time_out_follows_the_round_trip_down_to_what_the_line_can_do():
-    """No floor but the step of the robot's clock: on a quick line a lost frame costs some ms, not a tenth of a second."""
+    """No floor but the step of the robot's clock: on a quick line a lost frame costs some ms, not a hundred."""
     a, b = ends()
     for now_ms in range(0, 500, 5):
         a.send(FIRE.number, b"", now_ms)

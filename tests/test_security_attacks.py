@@ -359,3 +359,18 @@ def test_the_same_hello_said_again_after_its_session_began_makes_another_key():
     after = rig.greet()
 
     assert (after[1].nonce_a, after[1].proof_a) != (before[1].nonce_a, before[1].proof_a)
+
+
+def test_forgers_cannot_make_a_robot_look_at_more_tags_than_a_line_brings_in_a_step(armed, monkeypatch):
+    looked = []
+    genuine = secret.tag
+    monkeypatch.setattr(secret, "tag", lambda *arguments: looked.append(1) or genuine(*arguments))
+    seed = frames.session_seed(armed.crc, armed.core.session)
+    flags = frames.SEALED
+    forged = [frames.encode(frames.seal(messages.ALIVE.number, i, 0, bytes(15), seed, flags)) for i in range(200)]
+
+    before = armed.core.link.forged
+    armed.core.step(armed.now_ms, b"".join(forged), 0)
+
+    assert armed.core.link.forged - before == 200
+    assert len(looked) <= 24
