@@ -151,6 +151,8 @@ class Commands:
             raise Refused(codes.UNKNOWN_CHANNEL, 255, order.without, (1 << core.channels.count) - 1)
         self._not_running()
         self._not_tripped()
+        if core.is_leaving():
+            raise Refused(codes.BUSY)
 
     def _test(self, without: int, seq: int, calibrates: bool) -> None:
         core = self._core

@@ -156,6 +156,10 @@ class Core:
         """Make room for the console soon, once the answer is on its way."""
         self._leave_ms = self.now_ms + LEAVE_MS
 
+    def is_leaving(self) -> bool:
+        """Return whether the console was asked for: nothing is armed any more."""
+        return self._leave_ms >= 0
+
     def leaves(self) -> bool:
         """Return whether it is time to make room for the console."""
         return 0 <= self._leave_ms <= self.now_ms

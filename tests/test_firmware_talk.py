@@ -80,3 +80,10 @@ def test_telemetry_comes_at_its_period_with_every_channel(rig):
     *_, duty_permille, coil_decidegc = usual(records[0])
     assert duty_permille == (500, 0, 0, 0, 0, 0, 0, 0)
     assert len(coil_decidegc) == 8
+
+
+def test_nothing_is_armed_any_more_once_the_console_was_asked_for(rig):
+    rig.say(messages.SERVICE)
+
+    assert refusal(rig.arm()).code == codes.BUSY
+    assert not rig.board.powered
