@@ -216,7 +216,7 @@ ROWS = (
     Row("line-flip:900", TWO, "", LEASE_MS, "link lost", "mend", "No frame is whole: the lease runs out (F03)."),
     Row("line-lose:900", TWO, "", LEASE_MS, "link lost", "mend", "As above."),
     Row("line-double:900", TWO, "", LEASE_MS, "link lost", "mend", "As above."),
-    Row("line-delay:2000", TWO, "", LEASE_MS, "lease", "mend", "The lease runs out (F03) before a frame arrives."),
+    Row("line-delay:2000", TWO, "F03", LEASE_MS, "lease", "mend", "The lease runs out before a frame arrives."),
     Row("line-baud:57600", TWO, "", LEASE_MS, "link lost", "mend", "Noise in place of bytes: the lease runs out."),
     Row("cable-cut", TWO, "", LEASE_MS, "link lost", "mend", "The lease runs out (F03)."),
     Row("host-killed", TWO, "", LEASE_MS, "link lost", "mend", "The lease runs out (F03)."),
