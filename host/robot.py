@@ -146,16 +146,19 @@ class Robot(Orders):
         self._armed = False
 
     def watch(self) -> Iterator[Record]:
-        """Yield telemetry and events as they come, up to the event that ends the running program."""
+        """Yield telemetry and events as they come, up to the event that ends the program: it runs, or waits to begin."""
         left_ms = self.now_ms() + LINGER_MS
+        waits = False
         while True:
             for record in self.talk.taken():
                 yield record
                 if isinstance(record, Event) and record.event in ENDS:
                     return
+                if isinstance(record, Event) and record.event in ("accepted", "started"):
+                    waits = record.event == "accepted"
                 if isinstance(record, Stopped) or (isinstance(record, Telemetry) and record.state == "running"):
                     left_ms = self.now_ms() + LINGER_MS
-            if self.talk.outages.lasting_ms(self.now_ms()):
+            if waits or self.talk.outages.lasting_ms(self.now_ms()):
                 left_ms = self.now_ms() + LINGER_MS
             if self.now_ms() >= left_ms:
                 raise LinkLost("the program ended and the robot's word about it was lost; `softrig status` asks it")

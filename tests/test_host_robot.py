@@ -2,6 +2,7 @@
 
 import pytest
 
+from hil_sim.link import open_link
 from host.errors import BadRequest, Interrupted, LinkLost, Refused
 from host.records import Event, Telemetry
 from host.robot import Robot
@@ -294,3 +295,18 @@ def test_a_program_starts_at_once_at_a_time_of_the_robot_or_at_the_next_sync(pee
     assert at_once == messages.AT_ONCE
     assert later == pytest.approx(peer.uptime_ms + 500, abs=20)
     assert ready == messages.AT_SYNC
+
+
+def test_a_program_that_begins_later_is_watched_until_it_ends():
+    """It waits for longer than a host waits for the word that a program has ended."""
+    code = program.fire(1, 300, 200) + program.halt()
+    with Robot(open_link("sim:circular?body=still")) as robot:
+        robot.connect()
+        robot.subscribe(100)
+        robot.upload(program.header(code, robot.profile.crc), code)
+        robot.arm()
+
+        robot.start(at_ms=robot.robot_ms() + 5000)
+        events = [record.event for record in robot.watch() if isinstance(record, Event)]
+
+    assert events == ["accepted", "started", "finished"]
