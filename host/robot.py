@@ -146,7 +146,7 @@ class Robot(Orders):
         self._armed = False
 
     def watch(self) -> Iterator[Record]:
-        """Yield telemetry and events as they come, up to the event that ends the program: it runs, or waits to begin."""
+        """Yield telemetry and events as they come, up to the one that ends a program that runs, or waits to begin."""
         left_ms = self.now_ms() + LINGER_MS
         waits = False
         while True:
