@@ -84,7 +84,8 @@ class Lines:
                 kept.append(corner)
             if over_ms * next_over_ms < 0:
                 share = over_ms / (over_ms - next_over_ms)
-                kept.append(tuple(a + share * (b - a) for a, b in zip(corner, following, strict=True)))  # type: ignore[arg-type]
+                (ahead_ms, drift), (next_ahead_ms, next_drift) = corner, following
+                kept.append((ahead_ms + share * (next_ahead_ms - ahead_ms), drift + share * (next_drift - drift)))
         return kept
 
 

@@ -5,10 +5,19 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 from hil_sim.candesk import CanDesk
-from hil_sim.canhost import Heard
+from hil_sim.canhost import CanHost, Heard
+from hil_sim.devices.canframe import Frame
 from hil_sim.ports import Pace, serve
 
 PATIENCE_S = 30
+
+
+def frames_heard(node: CanHost) -> list[Frame]:
+    """Return the frames of others that a node has heard since this was asked."""
+    got = []
+    while (happened := node.take()) is not None:
+        got += [happened.frame] if isinstance(happened, Heard) and not happened.own else []
+    return got
 
 
 class Echo:

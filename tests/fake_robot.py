@@ -10,6 +10,9 @@ import json
 import random
 import struct
 from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
 
 from host.definitions import dictionary_of
 from host.errors import LinkLost
@@ -183,6 +186,13 @@ class FakeRobot:
 
     def _post(self, message, **values) -> None:
         self.link.post(message.number, message.pack(**values))
+
+
+def plug_in(line: object, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Have every command of this test find `line` at the address fake:, which is the robot that it talks to."""
+    point = SimpleNamespace(name="fake", load=lambda: lambda address: line)
+    monkeypatch.setattr("host.link.entry_points", lambda group: [point])
+    monkeypatch.setenv("SOFTRIG_ROBOT", "fake:")
 
 
 class FakeLine:

@@ -4,20 +4,18 @@ import pytest
 
 from hil_sim.devices.canframe import Frame
 from hil_sim.devices.canstation import CanStation
-from host.canbus import CanBus
 from host.canlink import CanLink
 from host.robot import Robot
 from protocol import frames, messages
 from protocol.canbus import Segmenter
+from tests.can_robots import opened
 
 
 @pytest.fixture
 def bus():
     """A bus with one robot, number 1."""
-    bus = CanBus.open("can:softrig:circular?body=still@1")
-    yield bus
-    for line in list(bus._lines):
-        line.close()
+    with opened("can:softrig:circular?body=still@1") as bus:
+        yield bus
 
 
 @pytest.fixture

@@ -17,6 +17,7 @@ from host.robot import Robot
 from protocol import frames, messages, program
 from protocol.canbus import ALL, GAP_MS, HOST, WAKE_MS, Assembler, Segmenter, identifier
 from protocol.link import Link
+from tests.can_robots import opened
 
 STILL = "can:softrig:circular?body=still"
 STEP_US = 5_000
@@ -25,10 +26,8 @@ STEP_US = 5_000
 @pytest.fixture
 def bus():
     """A bus with one robot, number 1."""
-    bus = CanBus.open(f"{STILL}@1")
-    yield bus
-    for line in list(bus._lines):
-        line.close()
+    with opened(f"{STILL}@1") as bus:
+        yield bus
 
 
 @pytest.fixture

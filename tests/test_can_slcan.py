@@ -11,7 +11,7 @@ from hil_sim.candesk import CanDesk
 from hil_sim.canports import SlcanPort
 from hil_sim.devices.canframe import Frame
 from hil_sim.slcan import LINE_MAX, Slcan
-from tests.can_served import PATIENCE_S, Echo, next_frame, serving
+from tests.can_served import PATIENCE_S, Echo, frames_heard, next_frame, serving
 
 
 class Rig:
@@ -28,10 +28,7 @@ class Rig:
     def heard(self) -> list[Frame]:
         """Return what the other node has heard by some time from now."""
         self.run_ms()
-        got = []
-        while (happened := self.other.take()) is not None:
-            got += [happened.frame] if hasattr(happened, "frame") and not happened.own else []
-        return got
+        return frames_heard(self.other)
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from hil_sim.canports import CLIENTS_MAX, SlcanPort, SocketcandPort
 from hil_sim.devices.canframe import Frame
 from hil_sim.ports import PortError
 from hil_sim.socketcand import HOLD_US, PENDING_MAX, Socketcand
-from tests.can_served import PATIENCE_S, Echo, next_frame, serving
+from tests.can_served import PATIENCE_S, Echo, frames_heard, next_frame, serving
 
 OPEN = b"< open can0 >< rawmode >"
 
@@ -37,10 +37,7 @@ class Rig:
     def heard(self) -> list[Frame]:
         """Return what the other node has heard by some time from now."""
         self.run_us(10_000)
-        got = []
-        while (happened := self.other.take()) is not None:
-            got += [happened.frame] if hasattr(happened, "frame") and not happened.own else []
-        return got
+        return frames_heard(self.other)
 
 
 @pytest.fixture

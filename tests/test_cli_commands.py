@@ -5,13 +5,12 @@ import os
 import re
 import subprocess
 import sys
-from types import SimpleNamespace
 
 import pytest
 
 from host.definitions import dictionary_of
 from protocol import causes, codes, messages
-from tests.fake_robot import PROFILE, FakeLine, FakeRobot
+from tests.fake_robot import PROFILE, FakeLine, FakeRobot, plug_in
 
 LIMITS = json.loads(PROFILE)["coil"]
 SCRIPT = "gait 1\nrobot circular\nparam duty = 60 % [5 % .. 90 %]\nfire A at $duty for 400 ms\n"
@@ -26,9 +25,7 @@ def peer():
 def line(peer, monkeypatch):
     """A line to `peer`, at the address fake:."""
     line = FakeLine(peer)
-    point = SimpleNamespace(name="fake", load=lambda: lambda address: line)
-    monkeypatch.setattr("host.link.entry_points", lambda group: [point])
-    monkeypatch.setenv("SOFTRIG_ROBOT", "fake:")
+    plug_in(line, monkeypatch)
     monkeypatch.delenv("XDG_RUNTIME_DIR", raising=False)
     return line
 

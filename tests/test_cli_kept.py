@@ -1,10 +1,10 @@
 """The commands about what a robot keeps, each its own session with one robot on the bench."""
 
 import json
-from types import SimpleNamespace
 
 import pytest
 
+from tests.fake_robot import plug_in
 from tests.hil_rig import HilRig
 
 
@@ -31,9 +31,7 @@ def rig():
 @pytest.fixture
 def softrig(rig, softrig, monkeypatch):
     """Run a command line on the rig's robot."""
-    point = SimpleNamespace(name="rig", load=lambda: lambda address: Lasting(rig.link))
-    monkeypatch.setattr("host.link.entry_points", lambda group: [point])
-    monkeypatch.setenv("SOFTRIG_ROBOT", "rig:")
+    plug_in(Lasting(rig.link), monkeypatch)
     return softrig
 
 

@@ -1,12 +1,11 @@
 """Commands on a line that is lost: `run --if-lost`, and `attach` to what goes on without its host."""
 
 import json
-from types import SimpleNamespace
 
 import pytest
 
 from protocol import messages, program
-from tests.fake_robot import FakeRobot
+from tests.fake_robot import FakeRobot, plug_in
 from tests.test_host_reattach import BreakingLine
 
 SCRIPT = "gait 1\nrobot circular\nfire A at 60 % for 400 ms\nwait 5 s\n"
@@ -23,9 +22,7 @@ def peer():
 def line(peer, monkeypatch):
     """A line to `peer` that can be unplugged, at the address fake:."""
     line = BreakingLine(peer)
-    point = SimpleNamespace(name="fake", load=lambda: lambda address: line)
-    monkeypatch.setattr("host.link.entry_points", lambda group: [point])
-    monkeypatch.setenv("SOFTRIG_ROBOT", "fake:")
+    plug_in(line, monkeypatch)
     return line
 
 
