@@ -140,5 +140,15 @@ def test_a_robot_whose_key_is_not_known_is_not_ordered_to(paired, tmp_path):
         ask_for_console(paired, Keys(b"", os.urandom(32), False))
 
 
-def test_a_robot_that_does_not_answer_is_left_to_its_console(tmp_path):
-    ask_for_console(str(tmp_path / "tty"), Keys(b"", b"", False))
+def test_a_robot_that_does_not_answer_is_left_to_its_console(monkeypatch):
+    asked = []
+    monkeypatch.setattr("host.deploy.pairing.open_link", lambda address: asked.append(address) or absent(address))
+
+    ask_for_console("/dev/nothing", Keys(os.urandom(32), b"", False))
+
+    assert asked == ["/dev/nothing"]  # and not again with another key
+
+
+def absent(address):
+    """Say what a port that is not there says."""
+    raise PortAbsent(f"no port {address}")
