@@ -8,7 +8,7 @@ import pytest
 from hil_sim.link import SimLink
 from host import keys
 from host.deploy.pairing import Keys, ask_for_console, chosen
-from host.errors import BadRequest, NotOurs, NotPaired
+from host.errors import BadRequest, NotOurs, NotPaired, PortAbsent
 from tests.fake_pico import FakePico
 from tests.slot_bench import said
 from tests.test_deploy_board import deploy, image  # noqa: F401  (a fixture that every test here needs)
