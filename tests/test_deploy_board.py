@@ -9,6 +9,7 @@ from click.testing import CliRunner
 from hil_sim.bench import Bench, Parts
 from hil_sim.worlds import micropython
 from hil_sim.worlds.image import Image as BenchImage
+from host.cli import main as softrig_command
 from host.cli.deploy import command
 from host.deploy import image as images
 from host.deploy.bootrecord import CONFIRMED, BootRecord
@@ -18,11 +19,12 @@ from tests.fake_pico import FakePico
 from tests.slot_bench import PROFILE, said, small
 
 ROBOT = ("--robot-name", "circular")
+AS_ONE = softrig_command.context_settings  # a command keeps the help option that it had first
 
 
 def deploy(pico, *arguments):
     """Deploy to a board and return what was printed; raises what went wrong."""
-    result = CliRunner().invoke(command, ["--port", pico.port, *ROBOT, *arguments], catch_exceptions=False)
+    result = CliRunner().invoke(command, ["--port", pico.port, *ROBOT, *arguments], catch_exceptions=False, **AS_ONE)
     if result.exception and not isinstance(result.exception, SystemExit):
         raise result.exception
     return result.output
@@ -180,11 +182,11 @@ def test_a_port_that_is_not_there_is_told(tmp_path, monkeypatch):
     monkeypatch.setattr("host.deploy.console.ABSENT_S", 0.0)
 
     with pytest.raises(PortAbsent, match="there is no port"):
-        CliRunner().invoke(command, ["--port", str(tmp_path / "tty"), *ROBOT], catch_exceptions=False)
+        CliRunner().invoke(command, ["--port", str(tmp_path / "tty"), *ROBOT], catch_exceptions=False, **AS_ONE)
 
 
 def test_a_dry_run_without_a_port_lists_the_image(image):
-    told = CliRunner().invoke(command, ["--dry-run", "--json", *ROBOT]).output
+    told = CliRunner().invoke(command, ["--dry-run", "--json", *ROBOT], **AS_ONE).output
 
     assert len(json.loads(told)["files"]) == len(image.slot) + len(image.root)
 

@@ -6,10 +6,13 @@ import pytest
 from click.testing import CliRunner
 
 from hil_sim.command import robots, sim
+from host.cli import main
+
+AS_ONE = main.context_settings  # a command keeps the help option that it had first
 
 
 def test_robots_lists_the_address_of_each():
-    result = CliRunner().invoke(robots, ["--json"])
+    result = CliRunner().invoke(robots, ["--json"], **AS_ONE)
 
     rows = [json.loads(line) for line in result.output.splitlines()]
     assert [row["address"] for row in rows] == ["sim:circular", "sim:sphere-a", "sim:sphere-b"]
@@ -18,7 +21,7 @@ def test_robots_lists_the_address_of_each():
 
 
 def test_robots_fits_a_terminal_and_names_every_coil():
-    lines = CliRunner().invoke(robots).output.splitlines()
+    lines = CliRunner().invoke(robots, **AS_ONE).output.splitlines()
 
     assert max(map(len, lines)) <= 120
     assert lines[0].startswith("sim:circular   8 coils  Eight BMX100 coils in a rubber ring")
@@ -47,7 +50,7 @@ def test_robots_fits_a_terminal_and_names_every_coil():
     ],
 )
 def test_what_cannot_be_built_is_refused(arguments, exit_code, message):
-    result = CliRunner().invoke(sim, arguments)
+    result = CliRunner().invoke(sim, arguments, **AS_ONE)
 
     assert result.exit_code == exit_code
     assert message in result.output
