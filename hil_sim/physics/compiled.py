@@ -1,8 +1,8 @@
 """Compiles the numerical kernels once, keeps them on disk, and says so when that takes a while.
 
 Every kernel carries `@kernel` or `@lean`. The compiler's own cache looks only at the file a function stands in, so a
-change in one file would leave stale code in its callers: `prepare` drops the whole cache when any source here is newer
-than it.
+change in one file would leave stale code in its callers: `prepare` drops the whole cache of a kernel's folder when any
+source there, or in this folder, which all others build on, is newer than it.
 """
 
 import sys
@@ -40,7 +40,8 @@ def prepare(entry: Any, *others: Any) -> bool:
     """
     if entry.signatures:
         return False
-    newest = max(_written_s(source) for source in Path(__file__).parent.rglob("*.py"))
+    sources = {Path(__file__).parent, *(Path(each.py_func.__code__.co_filename).parent for each in (entry, *others))}
+    newest = max(_written_s(source) for folder in sources for source in folder.glob("*.py"))
     folders = [Path(each.stats.cache_path) for each in (entry, *others)]
     indexes = [index for folder in folders for index in folder.glob("*.nbi")]
     fresh = [index for index in indexes if _written_s(index) >= newest]
