@@ -4,7 +4,7 @@ The profile is the last part of the dictionary that every robot gives to every h
 be asked of the robot. Values keep the units of their names.
 
     profile = read_profile(text)
-    mask = profile.mask(["A", "C"])
+    mask = profile.coil_mask(["A", "C"])
 """
 
 from __future__ import annotations
@@ -14,92 +14,90 @@ from binascii import crc32
 from collections.abc import Iterable
 from dataclasses import MISSING, dataclass, fields
 from functools import cached_property
-from typing import Any, TypeVar, get_type_hints
+from typing import Any, NamedTuple, TypeVar, get_type_hints
 
 from host.errors import BadRequest, Mismatch
-from protocol import program
+from host.limits import (
+    CameraLimits,
+    Coil,
+    CoilLimits,
+    Joint,
+    OrientLimits,
+    ProgramLimits,
+    ServoLimits,
+    SessionLimits,
+    SupplyLimits,
+)
 
 T = TypeVar("T")
 
 
-@dataclass(frozen=True, slots=True)
-class Channel:
-    """One output of the robot and what hangs on it."""
+class Parts(NamedTuple):
+    """What a robot has, by label: its channels in the order of the masks, those that are coils, those that are joints.
 
-    label: str
-    kind: str
-    chip: int
-    output: int
+    `cameras` is 1 where a camera sees how the object lies, else 0.
+    """
 
-
-@dataclass(frozen=True, slots=True)
-class CoilLimits:
-    """What the firmware allows each coil, and the figures its temperature estimate rests on."""
-
-    duty_max_permille: int
-    hold_max_ms: int
-    on_max_ms: int
-    rest_ms: int
-    heat_budget_mj: int
-    heat_leak_ms: int
-    trip_degc: int
-    resistance_mohm: int
-    wiring_mohm: int
-    heat_capacity_uj_per_k: int
-    loss_uw_per_k: int
-    latent_uj: int
-    as_degc: int
-    af_degc: int
-    ms_degc: int
-    mf_degc: int
-
-
-@dataclass(frozen=True, slots=True)
-class SupplyLimits:
-    """What the coil supply can give."""
-
-    current_max_ma: int
-    at_once_max: int
-    low_mv: int
-    shunt_mohm: int
-
-
-@dataclass(frozen=True, slots=True)
-class SessionLimits:
-    """How long the robot goes on without hearing its host."""
-
-    lease_ms: int
-    lease_max_ms: int
-
-
-@dataclass(frozen=True, slots=True)
-class ProgramLimits:
-    """What the robot's sequencer holds."""
-
-    bytes_max: int
-    depth_max: int = program.DEPTH_MAX
-    guards_max: int = program.GUARDS_MAX
+    channels: tuple[str, ...] = ()
+    coils: tuple[str, ...] = ()
+    joints: tuple[str, ...] = ()
+    cameras: int = 0
 
 
 @dataclass(frozen=True)
 class Profile:
-    """A robot: its channels in the order of the bit masks, its groups and its limits."""
+    """A robot: its channels in the order of the bit masks, its groups and its limits.
+
+    What a robot does not have stands as None; `coil` and `servo` are its limits where it must have them.
+    """
 
     robot: str
     supply_mv: int
-    channels: tuple[Channel, ...]
+    channels: tuple[Coil | Joint, ...]
     groups: dict[str, tuple[str, ...]]
-    coil: CoilLimits
+    coil_limits: CoilLimits | None
+    servo_limits: ServoLimits | None
     supply: SupplyLimits
     session: SessionLimits
     program: ProgramLimits
     crc: int
     imu: dict[str, int] | None = None  # address of the attitude sensor, where there is one
+    camera: CameraLimits | None = None
+    orient: OrientLimits | None = None
+
+    @property
+    def coil(self) -> CoilLimits:
+        """Return the limits of the coils; BadRequest on a robot without coils."""
+        if self.coil_limits is None:
+            raise BadRequest(f"{self.robot} has no coils")
+        return self.coil_limits
+
+    @property
+    def servo(self) -> ServoLimits:
+        """Return the limits of the joints; BadRequest on a robot without joints."""
+        if self.servo_limits is None:
+            raise BadRequest(f"{self.robot} has no joints")
+        return self.servo_limits
 
     @cached_property
     def labels(self) -> tuple[str, ...]:
         """Return the labels of all channels, in the order of the masks."""
         return tuple(channel.label for channel in self.channels)
+
+    @cached_property
+    def coil_labels(self) -> tuple[str, ...]:
+        """Return the labels of the coils, in the order of what the robot tells of each coil."""
+        return tuple(channel.label for channel in self.channels if isinstance(channel, Coil))
+
+    @cached_property
+    def joint_labels(self) -> tuple[str, ...]:
+        """Return the labels of the joints, in the order of what the robot tells of each joint."""
+        return tuple(channel.label for channel in self.channels if isinstance(channel, Joint))
+
+    @cached_property
+    def parts(self) -> Parts:
+        """Return what the robot has, by label."""
+        return Parts(self.labels, self.coil_labels, self.joint_labels, int(self.camera is not None))
 
     def mask(self, names: Iterable[str]) -> int:
         """Return the bit mask of these labels or groups; BadRequest lists the known ones."""
@@ -107,6 +105,22 @@ class Profile:
         for name in names:
             for label in self.groups.get(name, (name,)):
                 mask |= 1 << self._index(label)
+        return mask
+
+    def coil_mask(self, names: Iterable[str]) -> int:
+        """Return the bit mask of these coils or groups; BadRequest names one that is a joint."""
+        mask = self.mask(names)
+        for label in self.named(mask):
+            if label in self.joint_labels:
+                raise BadRequest(f"{label} is a joint, no coil: `softrig move {label} --to 8deg` turns it")
+        return mask
+
+    def joint_mask(self, names: Iterable[str]) -> int:
+        """Return the bit mask of these joints or groups; BadRequest names one that is a coil."""
+        mask = self.mask(names)
+        for label in self.named(mask):
+            if label in self.coil_labels:
+                raise BadRequest(f"{label} is a coil, no joint: `softrig fire {label}` heats it")
         return mask
 
     def named(self, mask: int) -> tuple[str, ...]:
@@ -121,7 +135,8 @@ class Profile:
         if label not in self.labels:
             groups = f", groups {' '.join(self.groups)}" if self.groups else ""
             shown = label if label.isprintable() and label.strip() else repr(label)
-            raise BadRequest(f"no coil {shown} on {self.robot}: it has {' '.join(self.labels)}{groups}")
+            what = "channel" if self.coil_labels and self.joint_labels else "joint" if self.joint_labels else "coil"
+            raise BadRequest(f"no {what} {shown} on {self.robot}: it has {' '.join(self.labels)}{groups}")
         return self.labels.index(label)
 
 
@@ -129,20 +144,38 @@ def read_profile(text: bytes) -> Profile:
     """Return the profile that stands in `text`; Mismatch when a value that this version needs is not there."""
     try:
         data = json.loads(text)
+        channels = tuple(_channel(entry) for entry in data["channels"])
         return Profile(
             robot=str(data["robot"]),
             supply_mv=int(data["supply_mv"]),
-            channels=tuple(_taken(Channel, entry) for entry in data["channels"]),
+            channels=channels,
             groups={name: tuple(labels.split()) for name, labels in data["groups"]},
-            coil=_taken(CoilLimits, data["coil"]),
+            coil_limits=_needed(CoilLimits, data, "coil", any(isinstance(each, Coil) for each in channels)),
+            servo_limits=_needed(ServoLimits, data, "servo", any(isinstance(each, Joint) for each in channels)),
             supply=_taken(SupplyLimits, data["supply"]),
             session=_taken(SessionLimits, data["session"]),
             program=_taken(ProgramLimits, data["program"]),
             crc=crc32(text),
             imu=data.get("imu"),
+            camera=_needed(CameraLimits, data, "camera"),
+            orient=_needed(OrientLimits, data, "orient"),
         )
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError, RecursionError) as error:
         raise Mismatch(f"the robot's profile cannot be read ({error}): its firmware is of another version") from error
+
+
+def _channel(entry: dict[str, Any]) -> Coil | Joint:
+    """Return a channel of one of the kinds that there are."""
+    if entry["kind"] == Coil.KIND:
+        return _taken(Coil, entry)
+    if entry["kind"] == Joint.KIND:
+        return _taken(Joint, entry)
+    raise ValueError(f"a channel of kind {entry['kind']!r}")
+
+
+def _needed(kind: type[T], data: dict[str, Any], name: str, needed: bool = False) -> T | None:
+    """Return the section of that name, None when there is none and none is needed."""
+    return _taken(kind, data[name]) if needed or name in data else None
 
 
 def _taken(kind: type[T], data: dict[str, Any]) -> T:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import ceil
 
 from host.gait.plan import Fire
-from host.profile import CoilLimits
+from host.limits import CoilLimits
 
 STEP_MS = 5  # control step of the firmware
 

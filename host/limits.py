@@ -1,0 +1,120 @@
+"""What stands in a robot's profile: its channels, of one kind or the other, and what its firmware allows them.
+
+Values keep the units of their names; `profile.py` reads them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from protocol import program
+
+
+@dataclass(frozen=True, slots=True)
+class Coil:
+    """A channel that heats a coil: the chip's address and its output."""
+
+    KIND: ClassVar = "sma"
+
+    label: str
+    kind: str
+    chip: int
+    output: int
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """A channel that turns a joint: the pin of its pulses, and the converter's inputs of its current and its angle."""
+
+    KIND: ClassVar = "servo"
+
+    label: str
+    kind: str
+    pin: int
+    current: int
+    angle: int
+
+
+@dataclass(frozen=True, slots=True)
+class CoilLimits:
+    """What the firmware allows each coil, and the figures its temperature estimate rests on."""
+
+    duty_max_permille: int
+    hold_max_ms: int
+    on_max_ms: int
+    rest_ms: int
+    heat_budget_mj: int
+    heat_leak_ms: int
+    trip_degc: int
+    resistance_mohm: int
+    wiring_mohm: int
+    heat_capacity_uj_per_k: int
+    loss_uw_per_k: int
+    latent_uj: int
+    as_degc: int
+    af_degc: int
+    ms_degc: int
+    mf_degc: int
+
+
+@dataclass(frozen=True, slots=True)
+class ServoLimits:
+    """What the firmware allows each joint, and how its pulses and readings are to be understood."""
+
+    least_centideg: int
+    most_centideg: int
+    slew_centideg_per_s: int
+    hold_max_ms: int
+    stall_ma: int
+    stall_ms: int
+    pulse_hz: int
+    low_us: int
+    high_us: int
+    span_centideg: int
+    ua_per_count: int
+    low_counts: int
+    high_counts: int
+
+
+@dataclass(frozen=True, slots=True)
+class CameraLimits:
+    """Where the camera answers, and how long the robot goes on without a new angle from it."""
+
+    address: int
+    stale_ms: int
+
+
+@dataclass(frozen=True, slots=True)
+class OrientLimits:
+    """How the robot turns an object that its joints hold."""
+
+    gain_permille_per_s: int
+    swing_max_centideg: int
+
+
+@dataclass(frozen=True, slots=True)
+class SupplyLimits:
+    """What the supply of coils and joints can give."""
+
+    current_max_ma: int
+    at_once_max: int
+    low_mv: int
+    shunt_mohm: int
+
+
+@dataclass(frozen=True, slots=True)
+class SessionLimits:
+    """How long the robot goes on without hearing its host."""
+
+    lease_ms: int
+    lease_max_ms: int
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramLimits:
+    """What the robot's sequencer holds."""
+
+    bytes_max: int
+    depth_max: int = program.DEPTH_MAX
+    guards_max: int = program.GUARDS_MAX
