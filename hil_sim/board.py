@@ -3,7 +3,8 @@
 The outputs of both PWM chips drive only while the heartbeat keeps the monostable running and the emergency-stop loop
 is closed; the monitor's ALERT is the monostable's clear input. The coils are fed only while PWR_EN is high. Both rest
 low, hence off, when the processor is reset; the chips keep their registers through that. An attitude sensor is there
-where the body has `motion` to be felt; its axes are the core's.
+where the body has `motion` to be felt; its axes are the core's. An analogue converter hangs on the second SPI bus, and
+where there is something to look at, an angle camera on the I2C bus.
 
     board = Board(clock, journal, supply, outputs=[(0x60, 0), (0x60, 1)], ntc=Ntc())
     board.gates()  # what each coil is driven with
@@ -14,6 +15,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from hil_sim.clock import Clock
+from hil_sim.devices.anglecamera import AngleCamera, Optics
 from hil_sim.devices.canframe import Frame
 from hil_sim.devices.canwire import CanWire
 from hil_sim.devices.flash import Flash
@@ -23,12 +25,13 @@ from hil_sim.devices.ina226 import Ina226
 from hil_sim.devices.ina226converter import Source
 from hil_sim.devices.lsm6ds3tr import Lsm6ds3tr, Motion
 from hil_sim.devices.mcp2515 import Mcp2515
+from hil_sim.devices.mcp3208 import Mcp3208
 from hil_sim.devices.monostable import Monostable
 from hil_sim.devices.ntc import Ntc
 from hil_sim.devices.pca9685 import Gate, Pca9685
 from hil_sim.devices.pwm import PwmSlices
 from hil_sim.devices.remanence import Remanence
-from hil_sim.devices.servo import Servo
+from hil_sim.devices.servo import DEAD_BAND_US, Servo
 from hil_sim.devices.spi import SpiBus
 from hil_sim.devices.uart import Uart
 from hil_sim.journal import ADC, CAN_HEARD, CAN_SENT, FAULT, RESET, UART_HEARD, Journal
@@ -36,6 +39,7 @@ from hil_sim.journal import ADC, CAN_HEARD, CAN_SENT, FAULT, RESET, UART_HEARD, 
 PWR_EN, HEARTBEAT, ESTOP_SENSE, ALERT = 2, 3, 6, 7
 SDA, SCL = 4, 5
 SERVOS = (8, 9, 10)
+ADC_MISO, ADC_SELECT, ADC_SCK, ADC_MOSI = range(12, 16)
 MISO, CAN_SELECT, SCK, MOSI, CAN_INTERRUPT = range(16, 21)
 WARM = 21
 THERMISTOR_CHANNEL = 0
@@ -43,6 +47,7 @@ HEARTBEAT_WINDOW_US = 50_000
 PWM_CHIPS = (0x60, 0x61)
 MONITOR = 0x40
 ATTITUDE = 0x6A
+CAMERA = 0x33
 _OFF = (0.0, 0.0)
 _ON = (0.0, 1.0)
 
@@ -74,6 +79,8 @@ class Board:
         identity: str = "softrig",
         motion: Motion | None = None,
         can_wire: CanWire | None = None,
+        camera: Optics | None = None,
+        servo_dead_band_us: float = DEAD_BAND_US,
     ) -> None:
         self.clock = clock
         self.journal = journal
@@ -85,7 +92,9 @@ class Board:
         self.pwm = {address: Pca9685(address, clock, self._on_change) for address in PWM_CHIPS}
         self.monitor = Ina226(MONITOR, clock, source, self._on_alert)
         self.imu = None if motion is None else Lsm6ds3tr(ATTITUDE, clock, motion, identity)
-        self.bus = Bus([*self.pwm.values(), self.monitor, *([self.imu] if self.imu else [])])
+        self.camera = None if camera is None else AngleCamera(CAMERA, clock, camera, identity)
+        self.bus = Bus([*self.pwm.values(), self.monitor])
+        self.bus.chips += [chip for chip in (self.imu, self.camera) if chip is not None]
         self.ntc = ntc
         self.flash = Flash({})
         self.uart = Uart(baud)
@@ -93,9 +102,11 @@ class Board:
         self.gpio = Gpio(clock, journal)
         self.can_wire = can_wire or CanWire(clock)
         self.can = Mcp2515(clock, self.can_wire, passed=self._on_frame)
-        self.spi = SpiBus({CAN_SELECT: self.can}, lambda pin: self.gpio.mode(pin) == OUT and not self.gpio.driven(pin))
+        self.adc = Mcp3208()
+        self.spi = SpiBus({CAN_SELECT: self.can}, self._is_low)
+        self.adc_spi = SpiBus({ADC_SELECT: self.adc}, self._is_low)
         self.pulses = PwmSlices(clock, journal)
-        self.servos = {pin: Servo() for pin in SERVOS}
+        self.servos = {pin: Servo(dead_band_us=servo_dead_band_us) for pin in SERVOS}
         self.remanence = Remanence(clock)
         self.gpio.watchers[PWR_EN] = self._on_power
         self.gpio.sources[WARM] = self.remanence.level
@@ -103,6 +114,7 @@ class Board:
         self.gpio.sources[ESTOP_SENSE] = lambda: 1 if self.estop_closed else None
         self.gpio.sources[ALERT] = self.monitor.alert_level
         self.gpio.watchers[CAN_SELECT] = lambda _: self.spi.look()
+        self.gpio.watchers[ADC_SELECT] = lambda _: self.adc_spi.look()
         self.gpio.sources[CAN_INTERRUPT] = self.can.int_level
         for pin, servo in self.servos.items():
             self.pulses.watch(pin, servo.pulsed)
@@ -149,6 +161,7 @@ class Board:
         self.journal.note(self.clock.now_us, RESET, cause, b"")
         self.gpio.reset()
         self.spi.look()
+        self.adc_spi.look()
         self.pulses.reset()
         self.uart.close(self.clock.now_us)
 
@@ -158,8 +171,10 @@ class Board:
             chip.reset()
         self.monitor.reset()
         self.can.reset()
-        if self.imu is not None:
-            self.imu.reset()
+        self.adc.reset()
+        for sensor in (self.imu, self.camera):
+            if sensor is not None:
+                sensor.reset()
 
     def host_write(self, data: bytes) -> None:
         """Put bytes of the host on the serial line."""
@@ -176,6 +191,10 @@ class Board:
         """Take the board off the CAN bus for good."""
         if self.can.can in self.can_wire.nodes:
             self.can_wire.leave(self.can.can)
+
+    def _is_low(self, pin: int) -> bool:
+        """Return whether the processor drives a pin low."""
+        return self.gpio.mode(pin) == OUT and not self.gpio.driven(pin)
 
     def _on_frame(self, frame: Frame, outward: bool) -> None:
         flags = bytes((frame.extended << 1 | frame.remote, frame.length))

@@ -1,9 +1,9 @@
 """A hobby servo's input: the width of its pulses says the angle it is to go to. The joint itself is the body's.
 
 Pulses of 1.5 ms mean the middle, and it covers its range from 0.5 to 2.5 ms, as makers of 180 degree servos print it.
-ASSUMED, in the order of what they print: pulses come 40 to 333 times a second; a change within the dead band of 5 us
-moves nothing; a pulse outside the range counts as its end up to 100 us beyond, and is no pulse further out; without
-pulses for 100 ms it goes limp.
+ASSUMED, in the order of what they print: pulses come 40 to 333 times a second; a change within the dead band, 5 us of
+a plain servo and 1 us of a digital one, moves nothing; a pulse outside the range counts as its end up to 100 us beyond,
+and is no pulse further out; without pulses for 100 ms it goes limp.
 
     servo = Servo()
     servo.pulsed(now_us, 1500.0, 20_000.0)
@@ -22,12 +22,18 @@ class Servo:
     """Follows the pulses on its pin, from `low_us` at `low_deg` to `high_us` at `high_deg`."""
 
     def __init__(
-        self, low_us: float = 500.0, high_us: float = 2500.0, low_deg: float = -90.0, high_deg: float = 90.0
+        self,
+        low_us: float = 500.0,
+        high_us: float = 2500.0,
+        low_deg: float = -90.0,
+        high_deg: float = 90.0,
+        dead_band_us: float = DEAD_BAND_US,
     ) -> None:
         self._low_us = low_us
         self._high_us = high_us
         self._low_deg = low_deg
         self._high_deg = high_deg
+        self._dead_band_us = dead_band_us
         self._coming: deque[tuple[int, float | None]] = deque()  # when a width is first measured, None: no more
         self._width_us: float | None = None
 
@@ -51,7 +57,7 @@ class Servo:
     def _take(self, width_us: float | None) -> None:
         if width_us is None:
             self._width_us = None
-        elif self._width_us is None or abs(width_us - self._width_us) >= DEAD_BAND_US:
+        elif self._width_us is None or abs(width_us - self._width_us) >= self._dead_band_us:
             self._width_us = min(self._high_us, max(self._low_us, width_us))
 
     def _measured(self, width_us: float) -> bool:

@@ -5,7 +5,7 @@ Pins are `Pin` objects or their numbers; the rate is what the divider of the pic
 
 from typing import ClassVar
 
-from hil_sim.board import MISO, MOSI, SCK
+from hil_sim.board import ADC_MISO, ADC_MOSI, ADC_SCK, MISO, MOSI, SCK, Board
 from hil_sim.devices.pwm import CLOCK_HZ
 from hil_sim.devices.spi import SpiBus, transfer_time_us
 from hil_sim.journal import SPI as SPI_TRANSFER
@@ -44,7 +44,7 @@ class SPI:
         pins = tuple(default if pin is None else pin for pin, default in zip(given, _DEFAULTS[id], strict=True))
         board = self._processor.board
         self._which = id
-        self._bus = board.spi if pins == (SCK, MOSI, MISO) else SpiBus({}, lambda pin: False)
+        self._bus = _wired(board, pins)
         self._rate_hz = 0
         self._mode = 0
         self.init(baudrate, polarity, phase, bits, firstbit)
@@ -96,6 +96,13 @@ def rate_hz(wanted_hz: int) -> int:
     postdivs = range(256, 1, -1)
     postdiv = next((div for div in postdivs if CLOCK_HZ // (prescale * (div - 1)) > wanted_hz), 1)
     return CLOCK_HZ // (prescale * postdiv)
+
+
+def _wired(board: Board, pins: tuple[int, ...]) -> SpiBus:
+    """Return what hangs on SCK, MOSI and MISO at these pins."""
+    if pins == (SCK, MOSI, MISO):
+        return board.spi
+    return board.adc_spi if pins == (ADC_SCK, ADC_MOSI, ADC_MISO) else SpiBus({}, lambda pin: False)
 
 
 def _number(pin: Pin | int | None) -> int | None:
