@@ -20,11 +20,12 @@ from hil_sim.worlds.lines import I2C, UART
 from hil_sim.worlds.machine import WDT, machine_module, time_module
 from hil_sim.worlds.pins import ADC, Pin
 from hil_sim.worlds.processor import Processor
+from hil_sim.worlds.pulses import PWM
 from hil_sim.worlds.spi import SPI
 from hil_sim.worlds.world import Crashed, Interrupted
 
 PIN_SET, PIN_GET, I2C_WRITE, I2C_READ, UART_READ, UART_WRITE, CONVERT = range(7)
-FEED, SLEEP, TIME, CALL, CRASH, READ, EXCHANGE = range(7, 14)
+FEED, SLEEP, TIME, CALL, CRASH, READ, EXCHANGE, PULSE = range(7, 15)
 POSTED = (PIN_SET, FEED, SLEEP)  # they have no answer, unless they carry data
 WITHOUT_DATA = (I2C_READ, UART_READ)  # their length is how many bytes are wanted
 DONE, OS_ERROR, OTHER_ERROR, INTERRUPTED = range(4)
@@ -50,6 +51,7 @@ class Desk:
         self._acts = (
             self._pin_set, self._pin_get, self._i2c_write, self._i2c_read, self._uart_read, self._uart_write,
             self._convert, self._feed, self._sleep, self._time, self._call, self._crash, self._read, self._exchange,
+            self._pulse,
         )  # fmt: skip
 
     def serve(self, head: Request, data: bytes) -> bytes | None:
@@ -157,6 +159,10 @@ class Desk:
 
     def _exchange(self, bus: SPI, length: int, argument: int, data: bytes) -> tuple[int, bytes]:
         return 0, bus.transfer(data)
+
+    def _pulse(self, pwm: PWM, length: int, argument: int, data: bytes) -> tuple[int, bytes]:
+        pwm.duty_ns(int.from_bytes(data, "little"))
+        return 0, b""
 
     def _lively(self, value: Any) -> Any:
         """Return what JSON carried as the firmware meant it."""

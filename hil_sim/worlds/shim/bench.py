@@ -14,7 +14,8 @@ import sys
 from array import array
 from binascii import hexlify, unhexlify
 
-PIN_SET, PIN_GET, I2C_WRITE, I2C_READ, UART_READ, UART_WRITE, ADC, FEED, SLEEP, TIME, CALL, CRASH, READ, SPI = range(14)
+PIN_SET, PIN_GET, I2C_WRITE, I2C_READ, UART_READ, UART_WRITE, ADC, FEED, SLEEP, TIME, CALL = range(11)
+CRASH, READ, SPI, PULSE = range(11, 15)
 OS_ERROR, INTERRUPTED = 1, 3  # how a request may end, besides well (0) and with another error (2), told in words
 MACHINE, FILES, DESK = 0, 1, 2  # objects that are there from the start; the desk is the bench's end of this line
 HEAD = 8

@@ -5,7 +5,7 @@ constants and functions are those of the bench's own module, which tells them at
 """
 
 from bench import ADC as CONVERT
-from bench import DESK, FEED, I2C_READ, I2C_WRITE, MACHINE, PIN_GET, PIN_SET, UART_READ, UART_WRITE, Remote, line
+from bench import DESK, FEED, I2C_READ, I2C_WRITE, MACHINE, PIN_GET, PIN_SET, PULSE, UART_READ, UART_WRITE, Remote, line
 from bench import SPI as EXCHANGE
 
 PIN_US, WATCHDOG_US = line.call(DESK, "costs_us")
@@ -68,6 +68,26 @@ class SPI(Remote):
             line.take(read_buf)
         else:
             line.call(self.which, "write_readinto", (write_buf, read_buf))
+
+
+class PWM(Remote):
+    """The pulses on one pin."""
+
+    kind = "PWM"
+
+    def __init__(self, *args, **options) -> None:
+        Remote.__init__(self, *args, **options)
+        self._width = bytearray(4)
+
+    def duty_ns(self, value=-1):
+        """Return the width of the pulse [ns], or set it."""
+        if not 0 <= value < 1 << 30:
+            return line.call(self.which, "duty_ns", (value,))
+        width = self._width
+        for i in range(4):
+            width[i] = value >> 8 * i & 0xFF
+        line.ask(PULSE, self.which, 0, width)
+        return None
 
 
 class UART(Remote):
