@@ -1,7 +1,8 @@
 """The Pico-class board: which pin is which, and the chips on its bus.
 
 Two PCA9685 drive the coils' low-side MOSFETs, an INA226 watches the common supply, a thermistor the board; some robots
-carry an LSM6DS3TR-C besides, for their attitude. The outputs are enabled only while the heartbeat pin keeps moving (a
+carry an LSM6DS3TR-C besides, for their attitude. Robots with joints have servos on PWM pins, an MCP3208 that measures
+them, and an angle camera on the bus. The outputs are enabled only while the heartbeat pin keeps moving (a
 retriggerable monostable of 50 ms) and the emergency-stop loop is closed: a hung processor cannot hold a coil on. An
 MCP2515 joins the robot to a CAN bus where it is fitted.
 """
@@ -20,6 +21,7 @@ from firmware.drivers.pca9685 import Pca9685
 # GP numbers; docs/hardware.md has what each is wired to. boot.py and main.py, which import nothing, repeat five.
 TX, RX, PWR_EN, HEARTBEAT, SDA, SCL, ESTOP_SENSE, ALERT = 0, 1, 2, 3, 4, 5, 6, 7
 SERVOS = (8, 9, 10)
+ADC_MISO, ADC_SELECT, ADC_SCK, ADC_MOSI = 12, 13, 14, 15
 MISO, CAN_SELECT, SCK, MOSI, CAN_INTERRUPT = 16, 17, 18, 19, 20
 WARM, STRAP, THERMISTOR = 21, 22, 26
 MONITOR = 0x40
@@ -30,6 +32,7 @@ BUFFER_BYTES = 512
 HEARD_BYTES = 1024  # of the receive buffer: what a host with full credit sends while a step is late fits in
 CRYSTAL_HZ = 8_000_000  # of the MCP2515
 SPI_HZ = 8_000_000
+ADC_HZ = 1_000_000  # what the MCP3208 is promised to follow at 2.7 V and above
 QUIET_US, BUSY_US = 500, 200  # between two looks at the CAN bus; the second while frames wait to be sent
 CREDIT_BYTES = 960  # of unacknowledged frames; what is acknowledged to nobody, as a hello, needs the rest
 
@@ -63,6 +66,25 @@ class Board:
     def imu(self, address: int) -> Lsm6ds3tr:
         """Return the driver of the attitude sensor at that address."""
         return Lsm6ds3tr(self._bus, address)
+
+    def adc(self):
+        """Return the driver of the converter behind the joints' currents and angles; see `can` for its import."""
+        from firmware.drivers.mcp3208 import Mcp3208  # noqa: PLC0415
+
+        spi = SPI(1, ADC_HZ, sck=Pin(ADC_SCK), mosi=Pin(ADC_MOSI), miso=Pin(ADC_MISO))
+        return Mcp3208(spi, Pin(ADC_SELECT, Pin.OUT, value=1))
+
+    def servo(self, pin: int, hz: int):
+        """Return the driver of the servo on that pin, one of SERVOS, with so many pulses a second."""
+        from firmware.drivers.servo import Servo  # noqa: PLC0415
+
+        return Servo(pin, hz)
+
+    def camera(self, address: int):
+        """Return the driver of the angle camera at that address."""
+        from firmware.drivers.anglecamera import AngleCamera  # noqa: PLC0415
+
+        return AngleCamera(self._bus, address)
 
     def can(self, node: int):
         """Return the CAN port of a robot with that number, or None when there is no controller.
