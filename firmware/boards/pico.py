@@ -10,7 +10,7 @@ MCP2515 joins the robot to a CAN bus where it is fitted.
 import sys
 import time
 
-from machine import ADC, I2C, SPI, UART, WDT, Pin, unique_id
+from machine import ADC, I2C, PWM, SPI, UART, WDT, Pin, unique_id
 
 from firmware.dictionary import Dictionary
 from firmware.drivers.ina226 import Ina226
@@ -78,7 +78,7 @@ class Board:
         """Return the driver of the servo on that pin, one of SERVOS, with so many pulses a second."""
         from firmware.drivers.servo import Servo  # noqa: PLC0415
 
-        return Servo(pin, hz)
+        return Servo(PWM(Pin(pin)), hz)
 
     def camera(self, address: int):
         """Return the driver of the angle camera at that address."""

@@ -5,14 +5,12 @@ The pins of one slice (8 and 9, say) share its frequency, and `PWM.deinit` stops
 period on, and its neighbour goes on.
 """
 
-from machine import PWM, Pin
-
 
 class Servo:
-    """The pulses on one pin; none until `pulse`. It allocates no memory after that."""
+    """The pulses of one pin's PWM, so many a second; none until `pulse`. Only its making allocates memory."""
 
-    def __init__(self, pin_number: int, hz: int) -> None:
-        self._pwm = PWM(Pin(pin_number))
+    def __init__(self, pwm, hz: int) -> None:
+        self._pwm = pwm
         self._pwm.freq(hz)
         self.off()
 
