@@ -26,10 +26,12 @@ ARGUMENTS = {
     "off": "coils u32",
     "aim": "place u8, ahead u8, circle of 8 channels u64 [255: none]",
     "aimed": "place u8, duty u16 [permille], time u16 [ms], cut-off u16 [0.1 C; 0: none], ramp u16 [ms]",
+    "move": "joints u32, target i16 [0.01 deg], time u16 [ms]",
+    "orient": "target i16 [0.01 deg], time u16 [ms]",
 }
 SOURCES = (
     "1 coil temperature, 2 supply current, 3 supply voltage, 4 board temperature, 5 coil heat, 6 roll, 7 pitch, "
-    "8 coil nearest to down"
+    "8 coil nearest to down, 9 joint angle [0.01 deg], 10 joint current [mA], 11 angle of the gripped object [0.01 deg]"
 )
 STATES = {
     "boot": "for less than a control step after its start",
@@ -170,7 +172,7 @@ def op_table(table: Table) -> str:
     found = []
     for number, name in enumerate(program.NAMES):
         arguments = ARGUMENTS.get(name, "")
-        size = 1 + sum(int(bits) // 8 for bits in re.findall(r" u(\d+)", arguments))
+        size = 1 + sum(int(bits) // 8 for bits in re.findall(r" [ui](\d+)", arguments))
         if size != program.SIZES[number]:
             raise ValueError(f"{name}: {size} bytes described, {program.SIZES[number]} in protocol/program.py")
         words = getattr(program, "next_" if name == "next" else name).__doc__ or ""

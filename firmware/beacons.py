@@ -31,7 +31,7 @@ class Beacons:
         if now_ms - self._told_ms >= (BEACON_MS if awake else PROBE_MS):
             self._told_ms = now_ms
             self._port.tell(self._state_id, self._state())
-        elif awake and now_ms - self._coils_ms >= COILS_MS:
+        elif awake and self._core.channels.count and now_ms - self._coils_ms >= COILS_MS:
             self._coils_ms = now_ms
             self._port.tell(self._coils_id, self._coils())
 

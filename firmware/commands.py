@@ -28,6 +28,7 @@ class Commands:
             (messages.SUBSCRIBE, self._subscribe), (messages.PROGRAM, self._program), (messages.CODE, self._piece),
             (messages.START, self._start), (messages.CANCEL, self._cancel), (messages.COILS_REQUEST, self._coils),
             (messages.CALIBRATE, self._calibrate), (messages.SERVICE, self._service),
+            (messages.MOVE, self._move), (messages.ORIENT, self._orient),
         ) + core.records.orders()  # fmt: skip
 
     def serve(self, received) -> None:
@@ -97,8 +98,7 @@ class Commands:
             if not self.upload.go_on():
                 return
             self._armed()
-            if self.upload.needs_attitude and not self._core.attitude.known:
-                raise Refused(codes.NO_ATTITUDE)
+            self._sees()
         except Refused as refused:
             self._refuse(request, refused)
         else:
@@ -106,6 +106,14 @@ class Commands:
             self._core.reports.event(messages.ACCEPTED)
             self._begins = self._at
         self.upload.request = -1
+
+    def _sees(self) -> None:
+        """Raise Refused when a program asks for what this robot does not know now."""
+        core, limbs = self._core, self._core.control.limbs
+        if self.upload.needs_attitude and not core.attitude.known:
+            raise Refused(codes.NO_ATTITUDE)
+        if self.upload.needs_camera and not (limbs and limbs.camera and limbs.camera.known):
+            raise Refused(codes.NO_CAMERA)
 
     def _begin(self) -> None:
         self._begins = NOT
@@ -139,6 +147,8 @@ class Commands:
         self._testable(order)
         if not self._core.at_rest():
             raise Refused(codes.NOT_WHILE_ARMED)
+        if not self._core.channels.count:
+            raise Refused(codes.UNKNOWN_CHANNEL)
         self._core.records.must_be_cold(order.without)
         self._test(order.without, seq, True)
         return True
@@ -179,6 +189,22 @@ class Commands:
         core = self._core
         core.channels.fire(order.coils, order.duty_permille, order.hold_ms, core.now_ms)
 
+    def _move(self, order, seq: int) -> None:
+        limbs = self._ready_limbs()
+        limbs.move(order.joints, order.target_centideg, order.over_ms, order.hold_ms, self._core.now_ms)
+
+    def _orient(self, order, seq: int) -> None:
+        self._ready_limbs().turn(order.target_centideg, order.time_ms, order.hold_ms, self._core.now_ms)
+
+    def _ready_limbs(self):
+        """Return what turns joints, or raise Refused: not now, or this robot has none."""
+        self._not_running()
+        self._armed()
+        limbs = self._core.control.limbs
+        if not limbs:
+            raise Refused(codes.UNKNOWN_CHANNEL)
+        return limbs
+
     def _subscribe(self, order, seq: int) -> None:
         core = self._core
         numbers = order.variables or bytes(variables.USUAL)
@@ -190,7 +216,7 @@ class Commands:
         core = self._core
         self.answer(
             messages.STATUS, request=seq, state=core.state, code=core.code, uptime_ms=core.now_ms & 0xFFFFFFFF,
-            lease_ms=core.lease_left_ms(), step=core.player.step, coils=core.channels.on_mask,
+            lease_ms=core.lease_left_ms(), step=core.player.step, coils=core.control.driven_mask(),
             supply_mv=core.sense.supply_mv, current_ma=core.sense.current_ma,
             board_decidegc=core.sense.board_decidegc, roll_decideg=core.attitude.roll_decideg(),
             pitch_decideg=core.attitude.pitch_decideg(), down=core.attitude.down_channel(),

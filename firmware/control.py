@@ -24,7 +24,7 @@ class Control:
 
     def __init__(self, board, profile) -> None:
         chips = _chips(board, profile)
-        outputs = [(chips[channel.chip], channel.output) for channel in profile.channels]
+        outputs = [(chips[coil.chip], coil.output) for coil in profile.coils]
         supply = profile.supply
         self.board = board
         self.monitor = board.monitor(supply.shunt_mohm, supply.current_max_ma * ALERT_PERMILLE // 1000)
@@ -33,12 +33,13 @@ class Control:
         self.sense = Sense(board, self.monitor, self.channels.count, profile)
         self.guard = Guard(profile, self.sense, self.channels, board)
         self.attitude = _attitude(board, profile)
-        self.player = Player(self.channels, self.sense, self.attitude)
+        self.limbs = _limbs(board, profile)
+        self.player = Player(self.channels, self.sense, self.attitude, self.limbs)
         self.resistance = Resistance(self.channels.count, profile.coil)
         self.slot = Slot(board, self.monitor, self.channels, self.sense, profile.coil.wiring_mohm, MOST_MOHM)
         self.patrol = Patrol(self.slot, self.channels, self.sense, self.resistance, profile)
         self.selftest = SelfTest(
-            board, self.slot, self.channels, self.sense, self.resistance, self.monitor, profile
+            board, self.slot, self.channels, self.sense, self.resistance, self.monitor, profile, self.limbs
         )  # fmt: skip
         self._turn = 0
 
@@ -59,6 +60,8 @@ class Control:
         self.selftest.cancel()
         self.channels.without_mask = 0
         self.channels.all_off(now_ms)
+        if self.limbs:
+            self.limbs.all_off()
         try:
             self.channels.shut()
         except OSError:
@@ -83,6 +86,8 @@ class Control:
             self.slot.end()
         sense.read()
         self.attitude.look(now_ms)
+        if self.limbs:
+            self.limbs.look(now_ms)
         powered = messages.ARMED <= state <= messages.RUNNING or self.selftest.running
         code = self.guard.check(now_ms, powered)
         if not code and state == messages.RUNNING:
@@ -90,6 +95,8 @@ class Control:
         too_long = channels.update(now_ms, sense.temperature_millidegc) if channels.on_mask else NONE
         if too_long >= 0 and not code:
             code = self.guard.fault(codes.ON_TOO_LONG, channels.on_for_ms(too_long, now_ms), too_long)
+        if self.limbs and not code:
+            code = self._drive_limbs(now_ms, powered and not self.selftest.running)
         if powered and not code:
             code = self._measure()
         self._turn += 1
@@ -98,6 +105,15 @@ class Control:
         channels.write()
         self.board.beat()
         return code
+
+    def driven_mask(self) -> int:
+        """Return the channels of all coils that are on and joints that are driven."""
+        return self.channels.on_mask | (self.limbs.joints.on_mask if self.limbs else 0)
+
+    def _drive_limbs(self, now_ms: int, powered: bool) -> int:
+        code = self.limbs.drive(now_ms, powered)
+        self.guard.joints_on = self.limbs.joints.on_mask != 0
+        return code and self.guard.fault(code, self.limbs.sense.value, self.limbs.sense.channel)
 
     def _measure(self) -> int:
         """Go on with the self-test, whose findings refuse the arming, or with the patrol, whose findings trip."""
@@ -146,14 +162,23 @@ class Control:
 def _chips(board, profile) -> dict:
     """Return the driver of each PWM chip that the profile names."""
     chips = {}
-    for channel in profile.channels:
-        if channel.chip not in chips:
-            chips[channel.chip] = board.pwm(channel.chip)
+    for coil in profile.coils:
+        if coil.chip not in chips:
+            chips[coil.chip] = board.pwm(coil.chip)
     return chips
+
+
+def _limbs(board, profile):
+    """Return what turns joints, or None where the profile names none; what it takes is loaded only here."""
+    if not profile.joints:
+        return None
+    from firmware.limbs import Limbs  # noqa: PLC0415
+
+    return Limbs(board, profile)
 
 
 def _attitude(board, profile):
     """Return what knows where down is, or nothing of the kind where the profile names no sensor."""
     if not profile.imu_address:
         return Blind()
-    return Attitude(board.imu(profile.imu_address), [channel.label for channel in profile.channels])
+    return Attitude(board.imu(profile.imu_address), [coil.label for coil in profile.coils])

@@ -8,7 +8,7 @@ from firmware.commands import Commands
 from firmware.control import Control
 from firmware.greetings import Greetings
 from firmware.pairing import Pairing
-from firmware.player import FINISHED, TIMED_OUT
+from firmware.player import FINISHED, TIMED_OUT, UNSEEN
 from firmware.records import Records
 from firmware.reports import Reports
 from firmware.tasks import CONTROL, RECEIVE, Tasks
@@ -74,6 +74,8 @@ class Core:
         self.tasks.report(CONTROL)
         if code:
             self.trip(code, self.guard.channel, self.guard.value)
+        if self.control.limbs and self.control.limbs.lost():
+            self._lose_object()
         if self.state == messages.RUNNING:
             self._end_program()
         self.reports.tell()
@@ -129,7 +131,7 @@ class Core:
         self.reports.event(messages.STARTED)
 
     def end_program(self, event: int, code: int = 0, value: int = 0) -> None:
-        """Leave the running program: all coils off, still armed."""
+        """Leave the running program: all coils off, joints hold, still armed."""
         self.channels.all_off(self.now_ms)
         self.state = messages.ARMED
         if event == messages.FINISHED:
@@ -171,7 +173,7 @@ class Core:
     def at_rest(self) -> bool:
         """Return whether no coil is on and none can be: the time to write to the flash."""
         test = self.control.selftest
-        quiet = self.channels.on_mask == 0 and not (test.running or test.done)
+        quiet = self.control.driven_mask() == 0 and not (test.running or test.done)
         return quiet and self.state in (messages.IDLE, messages.TRIPPED)
 
     def may_restart(self) -> bool:
@@ -206,10 +208,10 @@ class Core:
 
     def _receive(self, data: bytes) -> None:
         if self._stop.feed(data):
-            coils = self.channels.on_mask
+            driven = self.control.driven_mask()
             self.intact_ms = self.now_ms
             self.trip(codes.STOP)
-            self.greetings.stopped(coils)
+            self.greetings.stopped(driven)
         self.link.may_adopt = self._may_adopt()
         delivered = self.link.receive(data, self.now_ms)
         if delivered or self.link.heard_ms == self.now_ms:
@@ -243,8 +245,18 @@ class Core:
         if not (self.state == messages.RUNNING and self.commands.upload.outlives_host):
             self.disarm(codes.LEASE_EXPIRED, self.lease_ms)
 
+    def _lose_object(self) -> None:
+        """The loop that turns the object ended for want of the camera: the joints hold, a program ends."""
+        since_ms = self.now_ms - self.control.limbs.camera.seen_ms
+        if self.state == messages.RUNNING:
+            self.end_program(messages.ABORTED, codes.CAMERA, since_ms)
+        else:
+            self.reports.event(messages.LOST, codes.CAMERA, 255, since_ms)
+
     def _end_program(self) -> None:
         if self.player.outcome == FINISHED:
             self.end_program(messages.FINISHED)
         elif self.player.outcome == TIMED_OUT:
             self.end_program(messages.ABORTED, codes.WAIT_TIMEOUT)
+        elif self.player.outcome == UNSEEN:
+            self._lose_object()

@@ -11,19 +11,22 @@ from protocol import program
 OPS_PER_STEP = 32
 WAIT = program.GUARDS_MAX  # where the condition of the wait is kept, behind those of the guards
 RUNNING, FINISHED, TIMED_OUT, GUARDED, LOST = 0, 1, 2, 3, 4  # LOST: it asked where down is, and nobody knows
+UNSEEN = 5  # it asked how the object lies, and no camera sees it
 
 
 class Player:
     """One program and where it stands."""
 
-    def __init__(self, channels, sense, attitude) -> None:
+    def __init__(self, channels, sense, attitude, limbs=None) -> None:
         self.step = 0  # number the program gave the step that runs, 0: none yet
         self.code = b""
         self.outcome = FINISHED
         self._channels = channels
         self._sense = sense
         self._attitude = attitude
+        self._limbs = limbs
         self._blind = False
+        self._unseen = False
         self._at = 0
         self._cursor_ms = 0
         self._wait_until_ms = 0
@@ -43,6 +46,7 @@ class Player:
         self._acts = (
             self._halt, self._fire, self._fire, self._delay, self._repeat,
             self._next, self._wait, self._guard, self._name, self._off, self._aim, self._aimed,
+            self._move, self._orient,
         )  # fmt: skip
 
     def load(self, code: bytes, now_ms: int) -> None:
@@ -58,9 +62,9 @@ class Player:
 
     def run(self, now_ms: int) -> int:
         """Go on as far as the time allows; return the outcome so far. Passes Refused on."""
-        self._blind = False
+        self._blind = self._unseen = False
         outcome = GUARDED if self._guarded() else self._run_ops(now_ms)
-        self.outcome = LOST if self._blind else outcome
+        self.outcome = LOST if self._blind else UNSEEN if self._unseen else outcome
         return self.outcome
 
     def _run_ops(self, now_ms: int) -> int:
@@ -73,7 +77,8 @@ class Player:
         return RUNNING
 
     def _halt(self, now_ms: int) -> int:
-        return RUNNING if self._channels.busy(now_ms) else FINISHED
+        busy = self._channels.busy(now_ms) or (self._limbs is not None and self._limbs.busy(now_ms))
+        return RUNNING if busy else FINISHED
 
     def _fire(self, now_ms: int) -> int:
         code, at = self.code, self._at
@@ -167,6 +172,17 @@ class Player:
         )
         return self._go_on()
 
+    def _move(self, now_ms: int) -> int:
+        code, at = self.code, self._at
+        mask, over_ms = program.number(code, at + 1, 4), program.number(code, at + 7, 2)
+        self._limbs.play_move(mask, program.signed(code, at + 5), over_ms, self._cursor_ms)
+        return self._go_on()
+
+    def _orient(self, now_ms: int) -> int:
+        code, at = self.code, self._at
+        self._limbs.play_turn(program.signed(code, at + 1), program.number(code, at + 3, 2), self._cursor_ms)
+        return self._go_on()
+
     def _go_on(self) -> int:
         self._at += program.SIZES[self.code[self._at]]
         return -1
@@ -185,13 +201,18 @@ class Player:
         self._sources[place] = source
         self._quantifiers[place] = code[at + 1] & 15
         self._compares[place] = code[at + 1] >> 4
-        self._masks[place] = program.number(code, at + 4, 4) if source in program.OF_COILS else 0
+        of_channels = source in program.OF_COILS or source in program.OF_JOINTS
+        self._masks[place] = program.number(code, at + 4, 4) if of_channels else 0
         self._values[place] = value
         self._readings[place] = None
         if source == program.TEMPERATURE:
             self._keep_readings(place, self._sense.temperature_millidegc, 100)
         elif source == program.HEAT:
             self._keep_readings(place, self._sense.heat_uj, 1000)
+        elif source in program.OF_JOINTS:
+            joints = self._limbs.joints
+            self._masks[place] >>= joints.first
+            self._readings[place] = joints.measured_centideg if source == program.ANGLE else joints.current_ma
 
     def _keep_readings(self, place: int, readings: array, unit: int) -> None:
         """Have a condition look at these; what is a fraction of a unit above its value does not count."""
@@ -224,6 +245,9 @@ class Player:
         if source in program.OF_ATTITUDE and not self._attitude.known:
             self._blind = True
             return False
+        if source == program.ORIENTATION and not self._limbs.camera.known:
+            self._unseen = True
+            return False
         if source == program.DOWN:
             return mask >> self._attitude.down_channel() & 1 == above  # IS is coded as ABOVE
         reading = self._reading(source)
@@ -238,4 +262,6 @@ class Player:
             return self._attitude.roll_decideg()
         if source == program.PITCH:
             return self._attitude.pitch_decideg()
+        if source == program.ORIENTATION:
+            return self._limbs.camera.centideg
         return self._sense.board_decidegc

@@ -6,18 +6,39 @@ The text itself is part of the dictionary that the host reads, and its CRC-32 is
 import json
 from binascii import crc32
 
+GAIN_MAX_PERMILLE_PER_S = 30_000  # beyond it the loop's integers would not stay small
+# What stands for the coil of a robot that has none: no order reaches it.
+NO_COIL = {
+    "duty_max_permille": 0, "hold_max_ms": 0, "on_max_ms": 0, "rest_ms": 0, "heat_budget_mj": 1, "heat_leak_ms": 1,
+    "trip_degc": 0, "resistance_mohm": 1000, "wiring_mohm": 0, "heat_capacity_uj_per_k": 1, "loss_uw_per_k": 0,
+    "latent_uj": 0, "as_degc": 60, "af_degc": 70, "ms_degc": 50, "mf_degc": 40,
+}  # fmt: skip
 
-class Channel:
+
+class Coil:
     """One coil: its label and the chip and output that drive it."""
 
-    def __init__(self, label: str, chip: int, output: int) -> None:
-        self.label = label
-        self.chip = chip
-        self.output = output
+    def __init__(self, row: dict) -> None:
+        self.label = row["label"]
+        self.chip = row["chip"]
+        self.output = row["output"]
+
+
+class Joint:
+    """One joint: its label, the pin of its servo's pulses, and the converter's inputs for its current and angle."""
+
+    def __init__(self, row: dict) -> None:
+        self.label = row["label"]
+        self.pin = row["pin"]
+        self.current = row["current"]
+        self.angle = row["angle"]
 
 
 class Profile:
-    """Limits and numbers of one robot; ValueError or KeyError when the text is not a profile of format 1."""
+    """Limits and numbers of one robot; ValueError or KeyError when the text is not a profile of format 1.
+
+    Channels are numbered as they stand in the profile, the coils before the joints.
+    """
 
     def __init__(self, text: bytes) -> None:
         data = json.loads(text)
@@ -25,8 +46,15 @@ class Profile:
             raise ValueError(f"profile format {data['format']}, this firmware reads 1")
         self.crc = crc32(text)
         self.robot = data["robot"]
-        self.channels = [Channel(row["label"], row["chip"], row["output"]) for row in data["channels"]]
-        self.coil = Coil(data["coil"])
+        rows = data["channels"]
+        self.coils = [Coil(row) for row in rows if row["kind"] == "sma"]
+        self.joints = [Joint(row) for row in rows if row["kind"] == "servo"]
+        if [row["kind"] for row in rows] != ["sma"] * len(self.coils) + ["servo"] * len(self.joints):
+            raise ValueError("channels: coils first, then joints, and no other kind")
+        self.coil = CoilLimits(data["coil"] if self.coils else NO_COIL)
+        self.servo = ServoLimits(data["servo"]) if self.joints else None
+        self.camera = CameraLimits(data["camera"]) if "camera" in data else None
+        self.orient = OrientLimits(data["orient"]) if "orient" in data else None
         self.supply = Supply(data["supply"], data["supply_mv"])
         self.lease_ms = data["session"]["lease_ms"]
         self.lease_max_ms = data["session"]["lease_max_ms"]
@@ -34,7 +62,7 @@ class Profile:
         self.imu_address = data["imu"]["address"] if "imu" in data else 0  # of the attitude sensor, 0: has none
 
 
-class Coil:
+class CoilLimits:
     """What a coil bears, and the numbers of its thermal estimate."""
 
     def __init__(self, data: dict) -> None:
@@ -58,8 +86,55 @@ class Coil:
         self.austenite_permille = data.get("austenite_permille", 920)
 
 
+class ServoLimits:
+    """What a joint may be told, and how its servo and the converter read."""
+
+    def __init__(self, data: dict) -> None:
+        self.least_centideg = data["least_centideg"]
+        self.most_centideg = data["most_centideg"]
+        self.slew_centideg_per_s = data["slew_centideg_per_s"]
+        self.hold_max_ms = data["hold_max_ms"]
+        self.stall_ma = data["stall_ma"]
+        self.stall_ms = data["stall_ms"]
+        self.pulse_hz = data["pulse_hz"]
+        self.ua_per_count = data["ua_per_count"]
+        self.low_counts = data["low_counts"]
+        self.high_counts = data["high_counts"]
+        self._low_ns = data["low_us"] * 1000
+        self._width_us = data["high_us"] - data["low_us"]
+        self._span_centideg = data["span_centideg"]
+
+    def width_ns(self, centideg: int) -> int:
+        """Return the width of the pulse that sends a servo to an angle; its span lies half on either side of 0."""
+        from_low = centideg + self._span_centideg // 2
+        return self._low_ns + from_low * self._width_us * 10 // (self._span_centideg // 100)
+
+    def angle_centideg(self, counts: int) -> int:
+        """Return the angle at which the potentiometer reads so many counts."""
+        way = self.high_counts - self.low_counts
+        return (counts - self.low_counts) * self._span_centideg // way - self._span_centideg // 2
+
+
+class CameraLimits:
+    """Where the camera is, and how old its word may be."""
+
+    def __init__(self, data: dict) -> None:
+        self.address = data["address"]
+        self.stale_ms = data["stale_ms"]
+
+
+class OrientLimits:
+    """How the object's angle is regulated."""
+
+    def __init__(self, data: dict) -> None:
+        self.gain_permille_per_s = data["gain_permille_per_s"]
+        if not 0 < self.gain_permille_per_s <= GAIN_MAX_PERMILLE_PER_S:
+            raise ValueError(f"gain {self.gain_permille_per_s} permille/s, 1 to {GAIN_MAX_PERMILLE_PER_S}")
+        self.swing_max_centideg = data["swing_max_centideg"]
+
+
 class Supply:
-    """What the coil supply gives."""
+    """What the supply of coils and joints gives."""
 
     def __init__(self, data: dict, nominal_mv: int) -> None:
         self.nominal_mv = nominal_mv

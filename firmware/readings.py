@@ -19,12 +19,14 @@ class Readings:
             self._current, self._board, self._roll, self._pitch, self._down, self._dropped, self._resent,
             self._overruns, self._duties, self._temperatures, self._heats, self._resistances, self._martensites,
             self._least, self._most, self._can_state, self._can_overflows, self._can_refused, self._can_bus_offs,
+            self._joint_angles, self._commanded, self._joint_currents, self._object,
         )  # fmt: skip
         self._core = core
         self._channels, self._sense, self._attitude = core.channels, core.sense, core.attitude
         self._resistance = core.control.resistance
         self._budget_mj = core.profile.coil.heat_budget_mj
         self._degrees = f"<{core.channels.count}h"
+        self._limbs = core.control.limbs
 
     def usual(self) -> bytes:
         """Return the usual variables, packed: they are sent so often that all are read at once.
@@ -36,8 +38,16 @@ class Readings:
             USUAL_SCALARS, core.state, core.player.step, sense.supply_mv, sense.current_ma, sense.board_decidegc,
             attitude.roll_decideg(), attitude.pitch_decideg(), attitude.down_channel(),
         )  # fmt: skip
+        if self._limbs:
+            return scalars + self._of_joints()
         degrees = struct.pack(self._degrees, *[millidegc // 100 for millidegc in sense.temperature_millidegc])
         return scalars + bytes(self._channels.duty_permille) + degrees
+
+    def _of_joints(self) -> bytes:
+        joints = self._limbs.joints
+        told = bytes(joints.measured_centideg) + bytes(joints.commanded_centideg) + bytes(joints.current_ma)
+        camera = self._limbs.camera
+        return told + struct.pack("<h", camera.object_centideg()) if camera else told
 
     def _state(self, values: list) -> None:
         values.append(self._core.state)
@@ -121,3 +131,19 @@ class Readings:
 
     def _can_bus_offs(self, values: list) -> None:
         values.append(self._core.can.bus_offs & 0xFFFF if self._core.can else 0)
+
+    def _joint_angles(self, values: list) -> None:
+        if self._limbs:
+            values.extend(self._limbs.joints.measured_centideg)
+
+    def _commanded(self, values: list) -> None:
+        if self._limbs:
+            values.extend(self._limbs.joints.commanded_centideg)
+
+    def _joint_currents(self, values: list) -> None:
+        if self._limbs:
+            values.extend(self._limbs.joints.current_ma)
+
+    def _object(self, values: list) -> None:
+        if self._limbs and self._limbs.camera:
+            values.append(self._limbs.camera.object_centideg())

@@ -2,7 +2,8 @@
 
 One look per control step, one coil at a time, for about 2 ms each. With the supply open no current may flow through an
 output that is on (else its switch is welded); with the supply on and every output off none either (else a MOSFET is
-stuck); then each coil's resistance must be in its band. The first that is not ends the test with everything off.
+stuck); then each coil's resistance must be in its band, and each joint's angle one that its potentiometer gives. The
+first that is not ends the test with everything off.
 """
 
 from firmware.sense import STRAY_MA
@@ -12,12 +13,13 @@ from protocol import codes
 SWITCH_STEPS = 2  # ASSUMED: the supply's switch, or relay, has followed after 10 ms
 WELDED_AT = SWITCH_STEPS
 STRAY_AT = 2 * SWITCH_STEPS + 1
+NO_JOINT = 255
 
 
 class SelfTest:
     """One test at a time. When `done`, `code` is 0 or that of the fault, with its channel, value and limit."""
 
-    def __init__(self, board, slot, channels, sense, resistance, monitor, profile) -> None:
+    def __init__(self, board, slot, channels, sense, resistance, monitor, profile, limbs=None) -> None:
         self.running = False
         self.done = False
         self.code = self.value = self.limit = 0
@@ -28,6 +30,7 @@ class SelfTest:
         self._sense = sense
         self._resistance = resistance
         self._monitor = monitor
+        self._limbs = limbs
         self._low_mv = profile.supply.low_mv
         self._cold_millidegc = profile.coil.mf_millidegc
         self._without = 0
@@ -87,7 +90,14 @@ class SelfTest:
             self._judge(channel, mohm, supply_mv)
             self._at = self._tested_from(channel + 1)
         if self.running and self._at >= self._channels.count:
+            self._look_at_joints()
+
+    def _look_at_joints(self) -> None:
+        channel = self._limbs.broken_channel() if self._limbs else NO_JOINT
+        if channel == NO_JOINT:
             self._finish()
+        else:
+            self._fail(codes.JOINT, channel, self._limbs.sense.counts(channel))
 
     def _judge(self, channel: int, mohm: int, supply_mv: int) -> None:
         is_cold = self._sense.temperature_millidegc[channel] < self._cold_millidegc
@@ -102,7 +112,7 @@ class SelfTest:
                 self._resistance.refer(channel, mohm)
             self._sense.weigh(channel, self._resistance.hot_mohm(channel))
 
-    def _fail(self, code: int, channel: int, value: int, limit: int) -> None:
+    def _fail(self, code: int, channel: int, value: int, limit: int = 0) -> None:
         self.code, self.channel, self.value, self.limit = code, channel, value, limit
         self._board.power(False)
         self._monitor.begin()  # ends the alert that a shorted coil has raised

@@ -98,8 +98,8 @@ class Sense:
 
         Coils that are on are brought up at each step, the others in turn.
         """
-        turn = self._turn % self._count
-        if not on_mask >> turn & 1:
+        turn = self._turn % self._count if self._count else 0
+        if turn < self._count and not on_mask >> turn & 1:
             self._heat(turn, now_ms, 0)
         updated_ms, tenth_uw = self._updated_ms, self._full_uw // 10
         hottest = fullest = -1

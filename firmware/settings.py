@@ -26,7 +26,7 @@ class Settings:
     def __init__(self, store, profile) -> None:
         self.node = 1
         self.board_offset_decidegc = 0  # added to what the thermistor reads
-        self.measured_mohm = array("H", [0] * len(profile.channels))  # of each cold coil, 0: never measured
+        self.measured_mohm = array("H", [0] * len(profile.coils))  # of each cold coil, 0: never measured
         self._store = store
         self._nominal_mohm = profile.coil.resistance_mohm
         record = store.read()

@@ -15,7 +15,7 @@ class Upload:
     def __init__(self, profile) -> None:
         self.code = bytearray(0)
         self.outlives_host = False  # it runs on when the lease runs out
-        self.needs_attitude = False  # as the verification found
+        self.needs_attitude = self.needs_camera = False  # as the verification found
         self.request = -1  # number of the start that waits for the verification, -1: none
         self._profile = profile
         self._header = None
@@ -53,7 +53,8 @@ class Upload:
         if crc32(self.code) != self._header.crc:
             raise Refused(codes.BAD_CODE, 255, len(self.code))
         try:
-            self._check = Check(self.code, len(self._profile.channels), self._profile.program_bytes_max)
+            profile = self._profile
+            self._check = Check(self.code, len(profile.coils), profile.program_bytes_max, len(profile.joints))
         except program.BadProgram as bad:
             raise Refused(codes.BAD_CODE, 255, bad.at) from None
         self.request = request
@@ -65,4 +66,5 @@ class Upload:
         except program.BadProgram as bad:
             raise Refused(codes.BAD_CODE, 255, bad.at) from None
         self.needs_attitude = self._check.needs_attitude
+        self.needs_camera = self._check.needs_camera
         return done

@@ -29,7 +29,7 @@ CODES = (
     ),
     Code(
         codes.UNKNOWN_CHANNEL, "R03", "",
-        "The robot has no such coil.",
+        "The robot has no such channel, or none of that kind.",
         NOTHING,
         "`softrig info` lists the labels.",
     ),
@@ -196,6 +196,30 @@ CODES = (
         "Start the program at a time of the robot's clock instead.",
     ),
     Code(
+        codes.RANGE_LIMIT, "R31", "centideg",
+        "The angle is outside the joint's range.",
+        NOTHING,
+        "Ask for an angle within it; the limits are in the robot's profile.",
+    ),
+    Code(
+        codes.SLEW_LIMIT, "R32", "centideg/s",
+        "The joint would have to turn faster than it may.",
+        NOTHING,
+        "Give it more time.",
+    ),
+    Code(
+        codes.NO_CAMERA, "R33", "",
+        "The angle of the object is asked for, and no camera sees it.",
+        NOTHING,
+        "Check the camera and its view of the object; a robot without one cannot do this.",
+    ),
+    Code(
+        codes.NOT_HELD, "R34", "",
+        "An object can only be turned by joints that hold it, and one of them is limp.",
+        NOTHING,
+        "Move both joints first, so that they grip the object.",
+    ),
+    Code(
         codes.STOP, "F01", "",
         "A stop was received.",
         ALL_OFF,
@@ -338,6 +362,24 @@ CODES = (
         "The pairing key is damaged, or the number of this start could not be written down.",
         "No session begins, so that nobody can arm; latched.",
         "Make a new key with `softrig key new` and put it on the robot with `softrig deploy --key`.",
+    ),
+    Code(
+        codes.STALL, "F25", "mA",
+        "A joint's servo took its stall current for too long: it cannot turn as it is told.",
+        "Everything off, latched until clear; joints are limp.",
+        "Find what blocks it, or grip with less; then `softrig clear`.",
+    ),
+    Code(
+        codes.JOINT, "F26", "counts",
+        "The reading of a joint's angle is none that its potentiometer gives.",
+        "Before arming: refused, everything off. While armed: everything off, latched until clear.",
+        "Check the potentiometer's wire and the converter, then `softrig clear`.",
+    ),
+    Code(
+        codes.CAMERA, "F27", "ms",
+        "The camera gave no new angle of the object for too long while it was needed.",
+        "The regulation ended and the joints hold; a program that needed it was aborted.",
+        "Check the camera, its bus and its view of the object.",
     ),
 )  # fmt: skip
 

@@ -188,7 +188,7 @@ STOPPED = Message(
     0x05, "stopped",  # Answers the stop pattern once every coil is off.
     Field("state", "B"),  # State of the robot. [STATES]
     Field("code", "H"),  # Why it is stopped. [CODES]
-    Field("coils", "I"),  # Coils that were on when the stop arrived.
+    Field("coils", "I"),  # Bit mask of the channels that were driven when the stop arrived.
     Field("now_ms", "I"),  # The robot's clock.
 )  # fmt: skip
 NAK = Message(
@@ -269,6 +269,20 @@ START = Message(
 )  # fmt: skip
 CANCEL = Message(0x23, "cancel")  # Ends the running program: all coils off, still armed.
 
+MOVE = Message(
+    0x24, "move",  # Turn joints to an angle on a straight line, then hold them there; the order carries its own end.
+    Field("joints", "I"),  # Bit mask of channels in the order of the profile.
+    Field("target_centideg", "h"),  # Where to.
+    Field("over_ms", "H"),  # How long they are to take.
+    Field("hold_ms", "H"),  # Limp again after this long there unless driven anew.
+)  # fmt: skip
+ORIENT = Message(
+    0x25, "orient",  # Turn the object that both joints grip, by its angle as the camera sees it, then hold.
+    Field("target_centideg", "h"),  # The object's angle.
+    Field("time_ms", "H"),  # How long the robot regulates it.
+    Field("hold_ms", "H"),  # Both joints limp again after this long unless driven anew.
+)  # fmt: skip
+
 OK = Message(
     0x40, "ok",  # The request was taken.
     Field("request", "B"),  # Sequence number of the request.
@@ -289,7 +303,7 @@ STATUS = Message(
     Field("uptime_ms", "I"),  # Time since boot.
     Field("lease_ms", "H"),  # What is left of the lease, 0: none.
     Field("step", "H"),  # Step of the program, 0: none.
-    Field("coils", "I"),  # Coils that are on.
+    Field("coils", "I"),  # Bit mask of the channels that are driven.
     Field("supply_mv", "H"),  # Supply voltage at the coils' rail.
     Field("current_ma", "H"),  # Supply current.
     Field("board_decidegc", "h"),  # Temperature of the board.
@@ -369,7 +383,7 @@ MESSAGES = (
     HELLO, IDENTITY, DICTIONARY, DICTIONARY_PAGE, STOPPED, NAK, SYNC, WATCH,
     ALIVE, ARM, DISARM, CLEAR, FIRE, STATUS_REQUEST, SUBSCRIBE,
     FAULTS_REQUEST, CLEAR_FAULTS, SETTINGS_REQUEST, SET, CALIBRATE, COILS_REQUEST, SERVICE, CLOCK_REQUEST,
-    PROGRAM, CODE, START, CANCEL, OK, REFUSED, STATUS, FAULTS, SETTINGS, COILS, EVENT, TELEMETRY,
+    PROGRAM, CODE, START, CANCEL, MOVE, ORIENT, OK, REFUSED, STATUS, FAULTS, SETTINGS, COILS, EVENT, TELEMETRY,
     BEACON, BEACON_COILS, CLOCK,
 )  # fmt: skip
 

@@ -11,11 +11,22 @@ from binascii import crc32
 from collections import namedtuple
 
 HALT, FIRE, RAMP, DELAY, REPEAT, NEXT, WAIT, GUARD, STEP, OFF, AIM, AIMED = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11
-NAMES = ("halt", "fire", "ramp", "delay", "repeat", "next", "wait", "guard", "step", "off", "aim", "aimed")
-SIZES = (1, 11, 13, 5, 3, 1, 14, 9, 3, 5, 11, 10)
+MOVE, ORIENT = 12, 13
+NAMES = (
+    "halt", "fire", "ramp", "delay", "repeat", "next", "wait", "guard", "step", "off", "aim", "aimed", "move", "orient",
+)  # fmt: skip
+SIZES = (1, 11, 13, 5, 3, 1, 14, 9, 3, 5, 11, 10, 9, 5)
+
+# Bytes of each argument, below 0 where it is signed, of the ops that hold nothing but numbers.
+ARGUMENTS = {
+    FIRE: (4, 2, 2, 2), RAMP: (4, 2, 2, 2, 2), DELAY: (4,), REPEAT: (2,), STEP: (2,), OFF: (4,),
+    AIMED: (1, 2, 2, 2, 2), MOVE: (4, -2, 2), ORIENT: (-2, 2),
+}  # fmt: skip
 
 TEMPERATURE, CURRENT, VOLTAGE, BOARD, HEAT, ROLL, PITCH, DOWN = 1, 2, 3, 4, 5, 6, 7, 8  # sources of a condition
+ANGLE, LOAD, ORIENTATION = 9, 10, 11
 OF_COILS = (TEMPERATURE, HEAT, DOWN)  # those that ask about the coils of the mask
+OF_JOINTS = (ANGLE, LOAD)  # and about the joints of the mask
 OF_ATTITUDE = (ROLL, PITCH, DOWN)
 ANY, ALL, CHOSEN = 0, 1, 2  # CHOSEN: the mask is the number of the place that holds an aimed coil
 BELOW, ABOVE = 0, 1
@@ -99,8 +110,18 @@ def aimed(place: int, duty_permille: int, time_ms: int, cutoff_decidegc: int = 0
     return _op(AIMED, (place, 1), (duty_permille, 2), (time_ms, 2), (cutoff_decidegc, 2), (ramp_ms, 2))
 
 
+def move(mask: int, target_centideg: int, over_ms: int) -> bytes:
+    """Turn these joints to an angle within that time and hold them there; does not wait."""
+    return _op(MOVE, (mask, 4), (target_centideg & 0xFFFF, 2), (over_ms, 2))
+
+
+def orient(target_centideg: int, time_ms: int) -> bytes:
+    """Regulate the angle of the gripped object for that time, then hold; does not wait."""
+    return _op(ORIENT, (target_centideg & 0xFFFF, 2), (time_ms, 2))
+
+
 def halt() -> bytes:
-    """End the program once every coil it fired has ended."""
+    """End the program once every coil it fired has ended and every joint it moved has arrived."""
     return _op(HALT)
 
 
@@ -127,11 +148,15 @@ def number(code: bytes, at: int, size: int) -> int:
     return value
 
 
+def signed(code: bytes, at: int) -> int:
+    """Return the little-endian signed number of two bytes at `at`."""
+    value = code[at] | code[at + 1] << 8
+    return value - 0x10000 if value & 0x8000 else value
+
+
 def read_condition(code: bytes, at: int) -> Condition:
     """Return the condition that stands at `at`."""
-    value = number(code, at + 2, 2)
-    value = value - 0x10000 if value & 0x8000 else value
-    return Condition(code[at], code[at + 1] & 15, code[at + 1] >> 4, value, number(code, at + 4, 4))
+    return Condition(code[at], code[at + 1] & 15, code[at + 1] >> 4, signed(code, at + 2), number(code, at + 4, 4))
 
 
 def read_circle(code: bytes, at: int) -> list:
@@ -151,18 +176,20 @@ def disassemble(code: bytes) -> list[tuple]:
 
 def _arguments(code: bytes, at: int) -> tuple:
     op = code[at]
-    if op in (FIRE, RAMP):
-        order = (number(code, at + 1, 4), number(code, at + 5, 2), number(code, at + 7, 2), number(code, at + 9, 2))
-        return order + ((number(code, at + 11, 2),) if op == RAMP else ())
     if op == WAIT:
         return (read_condition(code, at + 1), number(code, at + 9, 4), code[at + 13])
     if op == GUARD:
         return (read_condition(code, at + 1),)
     if op == AIM:
         return (code[at + 1], code[at + 2], read_circle(code, at))
-    if op == AIMED:
-        return (code[at + 1],) + tuple([number(code, at + i, 2) for i in (2, 4, 6, 8)])
-    return () if SIZES[op] == 1 else (number(code, at + 1, SIZES[op] - 1),)
+    if op not in ARGUMENTS:
+        return ()
+    found = []
+    at += 1
+    for size in ARGUMENTS[op]:
+        found.append(signed(code, at) if size < 0 else number(code, at, size))
+        at += abs(size)
+    return tuple(found)
 
 
 def _condition(condition: Condition) -> bytes:

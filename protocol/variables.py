@@ -1,7 +1,8 @@
 """The table of variables: what a subscription may ask for, and a record of telemetry carries.
 
-A variable is a name, whose end is the unit, and a struct letter; a `*` behind it stands for one value for each coil, in
-the order of the robot's channels. Its number is its place in the table. A record holds the values one after the other
+A variable is a name, whose end is the unit, and a struct letter; behind it a `*` stands for one value for each coil, a
+`+` for one for each joint, in the order of the robot's channels, and an `@` for one where the robot has a camera and
+none where it has not. Its number is its place in the table. A record holds the values one after the other
 in the order in which they were asked for, little endian, no padding; what one means is the comment beside it. On the
 line they are veiled: a coil that is off is all zeros, and on a small board each zero costs more to stuff than the rest.
 
@@ -42,6 +43,10 @@ VARIABLES = (
     Variable("can_overflows", "H"),  # Times that CAN frames to the robot were lost unread, modulo 65536.
     Variable("can_refused", "H"),  # Frames of the robot for which CAN had no room, modulo 65536.
     Variable("can_bus_offs", "H"),  # Looks, ten a second, that found the robot off the bus by errors, modulo 65536.
+    Variable("joint_centideg", "h+"),  # Angle of the joint as measured.
+    Variable("commanded_centideg", "h+"),  # Angle that the joint is told to go to, -32768: it is limp.
+    Variable("joint_ma", "H+"),  # Current of the joint's servo.
+    Variable("object_centideg", "h@"),  # Angle of the gripped object as the camera sees it, -32768: not known.
 )
 
 
@@ -53,35 +58,44 @@ def number(name: str) -> int:
     return -1
 
 
-def layout(numbers, coils: int) -> str:
-    """Return the struct format of a record of these variables of a robot with so many coils."""
+def layout(numbers, coils: int, joints: int = 0, cameras: int = 0) -> str:
+    """Return the struct format of a record of these variables of a robot with so many coils, joints and cameras."""
     parts = ["<"]
     for place in numbers:
         letter = VARIABLES[place].letter
-        parts.append(f"{coils}{letter[0]}" if len(letter) > 1 else letter)
+        count = _count(letter, coils, joints, cameras)
+        parts.append(letter if count < 0 else f"{count}{letter[0]}" if count else "")
     return "".join(parts)
 
 
-def size(numbers, coils: int) -> int:
+def size(numbers, coils: int, joints: int = 0, cameras: int = 0) -> int:
     """Return how many bytes the values of these variables take."""
-    return struct.calcsize(layout(numbers, coils))
+    return struct.calcsize(layout(numbers, coils, joints, cameras))
 
 
-def unpack(numbers, values: bytes, coils: int) -> list:
-    """Return the value of each variable, a tuple where there is one for each coil; ValueError when they do not fit."""
-    form = layout(numbers, coils)
+def unpack(numbers, values: bytes, coils: int, joints: int = 0, cameras: int = 0) -> list:
+    """Return the value of each variable, a tuple where there are several or none; ValueError when they do not fit."""
+    form = layout(numbers, coils, joints, cameras)
     if struct.calcsize(form) != len(values):
         raise ValueError(f"{len(values)} bytes of values, expected {struct.calcsize(form)}")
     flat = struct.unpack(form, values)
     found, at = [], 0
     for place in numbers:
-        if len(VARIABLES[place].letter) > 1:
-            found.append(flat[at : at + coils])
-            at += coils
-        else:
+        count = _count(VARIABLES[place].letter, coils, joints, cameras)
+        if count < 0:
             found.append(flat[at])
             at += 1
+        else:
+            found.append(flat[at : at + count])
+            at += count
     return found
+
+
+def _count(letter: str, coils: int, joints: int, cameras: int) -> int:
+    """Return how many values a variable of that letter has, or -1 for a single one that every robot has."""
+    if len(letter) == 1:
+        return -1
+    return coils if letter[1] == "*" else joints if letter[1] == "+" else cameras
 
 
 def veiled(values: bytes) -> bytes:
@@ -90,11 +104,13 @@ def veiled(values: bytes) -> bytes:
     return (int.from_bytes(values, "little") ^ int.from_bytes(b"\x55" * count, "little")).to_bytes(count, "little")
 
 
+UNKNOWN_ANGLE = -0x8000  # of a joint that is limp, of an object that nobody sees
+
 # What a host that asks for nothing else is told, and what every listener can read.
 USUAL = tuple([
     number(name)
     for name in (
         "state", "step", "supply_mv", "current_ma", "board_decidegc", "roll_decideg", "pitch_decideg", "down",
-        "duty_permille", "coil_decidegc",
+        "duty_permille", "coil_decidegc", "joint_centideg", "commanded_centideg", "joint_ma", "object_centideg",
     )
 ])  # fmt: skip

@@ -1,6 +1,6 @@
 """Verification of a program's code: what no robot may run is refused before any of it runs.
 
-check = Check(code, channels=8, bytes_max=4096)
+check = Check(code, coils=8, bytes_max=4096)
 while not check.go_on(32):  # a piece of it in each control step
     ...
 """
@@ -8,9 +8,9 @@ while not check.go_on(32):  # a piece of it in each control step
 from protocol import program
 
 
-def check_code(code: bytes, channels: int, bytes_max: int) -> None:
+def check_code(code: bytes, coils: int, bytes_max: int, joints: int = 0) -> None:
     """Raise BadProgram unless the whole code may be run, see Check."""
-    check = Check(code, channels, bytes_max)
+    check = Check(code, coils, bytes_max, joints)
     while not check.go_on(len(code)):
         pass
 
@@ -20,15 +20,17 @@ class Check:
 
     Every op is whole and known, loops nest, guards are few, a coil is aimed before it is used, and the code ends with
     HALT; else BadProgram. Limits of duty and time are not looked at here: the channels hold every order against them
-    as it runs. `needs_attitude` tells whether anything seen so far asks where down is.
+    as it runs. `needs_attitude` tells whether anything seen so far asks where down is, `needs_camera` whether anything
+    asks how the gripped object lies.
     """
 
-    def __init__(self, code: bytes, channels: int, bytes_max: int) -> None:
+    def __init__(self, code: bytes, coils: int, bytes_max: int, joints: int = 0) -> None:
         if not 0 < len(code) <= bytes_max:
             raise program.BadProgram(f"{len(code)} bytes of code, at most {bytes_max}")
-        self.needs_attitude = False
+        self.needs_attitude = self.needs_camera = False
         self._code = code
-        self._channels = channels
+        self._coils = (1 << coils) - 1
+        self._joints = (1 << coils + joints) - 1 - self._coils
         self._at = 0
         self._op = program.HALT
         self._depth = 0
@@ -57,7 +59,9 @@ class Check:
         self._guards += op == program.GUARD
         if self._depth < 0 or self._depth > program.DEPTH_MAX:
             raise program.BadProgram(f"loops nested {self._depth} deep, at most {program.DEPTH_MAX}", at)
-        _check_arguments(self._code, at, self._channels)
+        self._masks(op, at)
+        _check_arguments(self._code, at)
+        self.needs_camera = self.needs_camera or op == program.ORIENT
         if op == program.AIM:
             self._aim(at)
         elif op == program.AIMED:
@@ -71,7 +75,7 @@ class Check:
         place, ahead, circle = self._code[at + 1], self._code[at + 2], program.read_circle(self._code, at)
         count = len(circle)
         hole = bytes(circle) != self._code[at + 3 : at + 3 + count]
-        if place >= program.AIMS_MAX or hole or count < 2 or ahead >= count or max(circle) >= self._channels:
+        if place >= program.AIMS_MAX or hole or count < 2 or ahead >= count or self._coils >> max(circle) == 0:
             raise program.BadProgram(f"a circle {circle} that place {place} cannot be aimed in", at)
         self._aims |= 1 << place
         self.needs_attitude = True
@@ -84,19 +88,34 @@ class Check:
         source, quantifier = condition.source, condition.quantifier
         if quantifier == program.CHOSEN and source in program.OF_COILS:
             self._chosen(condition.mask, at)
-        elif not (program.TEMPERATURE <= source <= program.DOWN and program.ANY <= quantifier <= program.ALL):
+        elif not (program.TEMPERATURE <= source <= program.ORIENTATION and quantifier <= program.ALL):
             raise program.BadProgram("a condition this robot does not know", at)
-        elif source in program.OF_COILS and not 0 < condition.mask < 1 << self._channels:
-            raise program.BadProgram(f"coils {condition.mask:#x}, this robot has {self._channels}", at)
+        elif source in program.OF_COILS:
+            _check_mask(condition.mask, self._coils, at)
+        elif source in program.OF_JOINTS:
+            _check_mask(condition.mask, self._joints, at)
         if condition.compare > program.ABOVE:
             raise program.BadProgram("a condition this robot does not know", at)
         self.needs_attitude = self.needs_attitude or source in program.OF_ATTITUDE
+        self.needs_camera = self.needs_camera or source == program.ORIENTATION
+
+    def _masks(self, op: int, at: int) -> None:
+        """Raise BadProgram when an order is for channels that this robot has not, or that are of the other kind."""
+        if op in (program.FIRE, program.RAMP, program.OFF):
+            _check_mask(program.number(self._code, at + 1, 4), self._coils, at)
+        elif op == program.MOVE:
+            _check_mask(program.number(self._code, at + 1, 4), self._joints, at)
+        elif op == program.ORIENT and not self._joints:
+            raise program.BadProgram("an object is to be turned, and this robot has no joints", at)
 
 
-def _check_arguments(code: bytes, at: int, channels: int) -> None:
+def _check_mask(mask: int, known: int, at: int) -> None:
+    if not mask or mask & ~known:
+        raise program.BadProgram(f"channels {mask:#x}, this robot has {known:#x} of that kind", at)
+
+
+def _check_arguments(code: bytes, at: int) -> None:
     op = code[at]
-    if op in (program.FIRE, program.RAMP, program.OFF) and not 0 < program.number(code, at + 1, 4) < 1 << channels:
-        raise program.BadProgram(f"coils {program.number(code, at + 1, 4):#x}, this robot has {channels}", at)
     duty_at = 5 if op in (program.FIRE, program.RAMP) else 2 if op == program.AIMED else 0
     duty_permille = program.number(code, at + duty_at, 2) if duty_at else 0
     if duty_permille > 1000:

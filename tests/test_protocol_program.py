@@ -81,11 +81,11 @@ BAD = {
     "next without repeat": (program.next_() + program.halt(), "nested -1"),
     "nine loops deep": (program.repeat(1) * 9 + program.next_() * 9 + program.halt(), "nested 9"),
     "no turns": (program.repeat(0) + program.next_() + program.halt(), "no turns"),
-    "no coil": (program.fire(0, 1, 1) + program.halt(), "coils 0x0"),
-    "unknown coil": (program.fire(1 << 8, 1, 1) + program.halt(), "coils 0x100"),
+    "no coil": (program.fire(0, 1, 1) + program.halt(), "channels 0x0"),
+    "unknown coil": (program.fire(1 << 8, 1, 1) + program.halt(), "channels 0x100"),
     "duty above all": (program.fire(1, 1001, 1) + program.halt(), "duty 1001"),
     "nine guards": (program.guard(CONDITION) * 9 + program.halt(), "at most 8 guards"),
-    "unknown source": (program.guard(Condition(9, 0, 0, 0, 1)) + program.halt(), "does not know"),
+    "unknown source": (program.guard(Condition(12, 0, 0, 0, 1)) + program.halt(), "does not know"),
     "unknown quantifier": (program.guard(Condition(1, 3, 0, 0, 1)) + program.halt(), "does not know"),
     "chosen current": (AIM + program.guard(Condition(2, 2, 0, 0, 0)) + program.halt(), "does not know"),
     "a coil used before it is aimed": (program.aimed(0, 1, 1) + AIM + program.halt(), "holds no coil"),
@@ -106,13 +106,13 @@ def test_a_bad_code_is_refused_and_says_why(name):
     code, why = BAD[name]
 
     with pytest.raises(program.BadProgram, match=why):
-        verify.check_code(code, channels=8, bytes_max=100)
+        verify.check_code(code, coils=8, bytes_max=100)
 
 
 @given(st.binary(max_size=100))
 def test_random_bytes_are_refused_or_can_be_taken_apart(code):
     try:
-        verify.check_code(code, channels=8, bytes_max=100)
+        verify.check_code(code, coils=8, bytes_max=100)
     except program.BadProgram:
         return
     assert program.disassemble(code)[-1][1] == "halt"

@@ -68,6 +68,8 @@ enum {
     SOFTRIG_KIND_CODE = 0x21,
     SOFTRIG_KIND_START = 0x22,
     SOFTRIG_KIND_CANCEL = 0x23,
+    SOFTRIG_KIND_MOVE = 0x24,
+    SOFTRIG_KIND_ORIENT = 0x25,
     SOFTRIG_KIND_OK = 0x40,
     SOFTRIG_KIND_REFUSED = 0x41,
     SOFTRIG_KIND_STATUS = 0x42,
@@ -168,6 +170,10 @@ enum {
     SOFTRIG_CODES_R28 = 28,
     SOFTRIG_CODES_R29 = 29,
     SOFTRIG_CODES_R30 = 30,
+    SOFTRIG_CODES_R31 = 31,
+    SOFTRIG_CODES_R32 = 32,
+    SOFTRIG_CODES_R33 = 33,
+    SOFTRIG_CODES_R34 = 34,
     SOFTRIG_CODES_F01 = 101,
     SOFTRIG_CODES_F02 = 102,
     SOFTRIG_CODES_F03 = 103,
@@ -191,7 +197,10 @@ enum {
     SOFTRIG_CODES_F21 = 121,
     SOFTRIG_CODES_F22 = 122,
     SOFTRIG_CODES_F23 = 123,
-    SOFTRIG_CODES_F24 = 124
+    SOFTRIG_CODES_F24 = 124,
+    SOFTRIG_CODES_F25 = 125,
+    SOFTRIG_CODES_F26 = 126,
+    SOFTRIG_CODES_F27 = 127
 };
 
 /* Bytes that belong to somebody else. */
@@ -880,7 +889,7 @@ static inline int softrig_unpack_dictionary_page(softrig_dictionary_page *out, s
 typedef struct softrig_stopped {
     uint8_t state; /* State of the robot. SOFTRIG_STATES_... */
     uint16_t code; /* Why it is stopped. SOFTRIG_CODES_... */
-    uint32_t coils; /* Coils that were on when the stop arrived. */
+    uint32_t coils; /* Bit mask of the channels that were driven when the stop arrived. */
     uint32_t now_ms; /* The robot's clock. */
 } softrig_stopped;
 
@@ -1268,6 +1277,65 @@ static inline int softrig_unpack_start(softrig_start *out, softrig_bytes payload
 /* 0x23 cancel: Ends the running program: all coils off, still armed. */
 /* It has no payload. */
 
+/* 0x24 move: Turn joints to an angle on a straight line, then hold them there; the order carries its own end. */
+#define SOFTRIG_MOVE_BYTES 10u
+typedef struct softrig_move {
+    uint32_t joints; /* Bit mask of channels in the order of the profile. */
+    int16_t target_centideg; /* Where to. */
+    uint16_t over_ms; /* How long they are to take. */
+    uint16_t hold_ms; /* Limp again after this long there unless driven anew. */
+} softrig_move;
+
+static inline int softrig_pack_move(const softrig_move *in, uint8_t *out, size_t room)
+{
+    if (room < SOFTRIG_MOVE_BYTES)
+        return -1;
+    softrig_put32(out, in->joints);
+    softrig_put16(out + 4, (uint16_t)in->target_centideg);
+    softrig_put16(out + 6, in->over_ms);
+    softrig_put16(out + 8, in->hold_ms);
+    return (int)SOFTRIG_MOVE_BYTES;
+}
+
+static inline int softrig_unpack_move(softrig_move *out, softrig_bytes payload)
+{
+    if (payload.size != SOFTRIG_MOVE_BYTES)
+        return -1;
+    out->joints = softrig_get32(payload.at);
+    out->target_centideg = softrig_signed16(softrig_get16(payload.at + 4));
+    out->over_ms = softrig_get16(payload.at + 6);
+    out->hold_ms = softrig_get16(payload.at + 8);
+    return 0;
+}
+
+/* 0x25 orient: Turn the object that both joints grip, by its angle as the camera sees it, then hold. */
+#define SOFTRIG_ORIENT_BYTES 6u
+typedef struct softrig_orient {
+    int16_t target_centideg; /* The object's angle. */
+    uint16_t time_ms; /* How long the robot regulates it. */
+    uint16_t hold_ms; /* Both joints limp again after this long unless driven anew. */
+} softrig_orient;
+
+static inline int softrig_pack_orient(const softrig_orient *in, uint8_t *out, size_t room)
+{
+    if (room < SOFTRIG_ORIENT_BYTES)
+        return -1;
+    softrig_put16(out, (uint16_t)in->target_centideg);
+    softrig_put16(out + 2, in->time_ms);
+    softrig_put16(out + 4, in->hold_ms);
+    return (int)SOFTRIG_ORIENT_BYTES;
+}
+
+static inline int softrig_unpack_orient(softrig_orient *out, softrig_bytes payload)
+{
+    if (payload.size != SOFTRIG_ORIENT_BYTES)
+        return -1;
+    out->target_centideg = softrig_signed16(softrig_get16(payload.at));
+    out->time_ms = softrig_get16(payload.at + 2);
+    out->hold_ms = softrig_get16(payload.at + 4);
+    return 0;
+}
+
 /* 0x40 ok: The request was taken. */
 #define SOFTRIG_OK_BYTES 1u
 typedef struct softrig_ok {
@@ -1333,7 +1401,7 @@ typedef struct softrig_status {
     uint32_t uptime_ms; /* Time since boot. */
     uint16_t lease_ms; /* What is left of the lease, 0: none. */
     uint16_t step; /* Step of the program, 0: none. */
-    uint32_t coils; /* Coils that are on. */
+    uint32_t coils; /* Bit mask of the channels that are driven. */
     uint16_t supply_mv; /* Supply voltage at the coils' rail. */
     uint16_t current_ma; /* Supply current. */
     int16_t board_decidegc; /* Temperature of the board. */

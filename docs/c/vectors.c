@@ -1019,37 +1019,133 @@ static void payload_53(void)
 static void payload_54(void)
 {
     static held payload, packed;
-    softrig_ok in, out;
-    in.request = 0u;
-    hex(&payload, "00");
-    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 54");
-    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 54");
-    check(out.request == in.request, "ok 54");
+    softrig_move in, out;
+    in.joints = 0u;
+    in.target_centideg = -32768;
+    in.over_ms = 0u;
+    in.hold_ms = 0u;
+    hex(&payload, "00000000008000000000");
+    check(same(packed.at, softrig_pack_move(&in, packed.at, HELD_MAX), &payload), "move 54");
+    check(softrig_unpack_move(&out, view(&payload)) == 0, "move 54");
+    check(out.joints == in.joints, "move 54");
+    check(out.target_centideg == in.target_centideg, "move 54");
+    check(out.over_ms == in.over_ms, "move 54");
+    check(out.hold_ms == in.hold_ms, "move 54");
 }
 
 static void payload_55(void)
 {
     static held payload, packed;
-    softrig_ok in, out;
-    in.request = 255u;
-    hex(&payload, "ff");
-    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 55");
-    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 55");
-    check(out.request == in.request, "ok 55");
+    softrig_move in, out;
+    in.joints = 4294967295u;
+    in.target_centideg = 32767;
+    in.over_ms = 65535u;
+    in.hold_ms = 65535u;
+    hex(&payload, "ffffffffff7fffffffff");
+    check(same(packed.at, softrig_pack_move(&in, packed.at, HELD_MAX), &payload), "move 55");
+    check(softrig_unpack_move(&out, view(&payload)) == 0, "move 55");
+    check(out.joints == in.joints, "move 55");
+    check(out.target_centideg == in.target_centideg, "move 55");
+    check(out.over_ms == in.over_ms, "move 55");
+    check(out.hold_ms == in.hold_ms, "move 55");
 }
 
 static void payload_56(void)
 {
     static held payload, packed;
-    softrig_ok in, out;
-    in.request = 35u;
-    hex(&payload, "23");
-    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 56");
-    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 56");
-    check(out.request == in.request, "ok 56");
+    softrig_move in, out;
+    in.joints = 3454992675u;
+    in.target_centideg = 28690;
+    in.over_ms = 32913u;
+    in.hold_ms = 57380u;
+    hex(&payload, "2301efcd1270918024e0");
+    check(same(packed.at, softrig_pack_move(&in, packed.at, HELD_MAX), &payload), "move 56");
+    check(softrig_unpack_move(&out, view(&payload)) == 0, "move 56");
+    check(out.joints == in.joints, "move 56");
+    check(out.target_centideg == in.target_centideg, "move 56");
+    check(out.over_ms == in.over_ms, "move 56");
+    check(out.hold_ms == in.hold_ms, "move 56");
 }
 
 static void payload_57(void)
+{
+    static held payload, packed;
+    softrig_orient in, out;
+    in.target_centideg = -32768;
+    in.time_ms = 0u;
+    in.hold_ms = 0u;
+    hex(&payload, "008000000000");
+    check(same(packed.at, softrig_pack_orient(&in, packed.at, HELD_MAX), &payload), "orient 57");
+    check(softrig_unpack_orient(&out, view(&payload)) == 0, "orient 57");
+    check(out.target_centideg == in.target_centideg, "orient 57");
+    check(out.time_ms == in.time_ms, "orient 57");
+    check(out.hold_ms == in.hold_ms, "orient 57");
+}
+
+static void payload_58(void)
+{
+    static held payload, packed;
+    softrig_orient in, out;
+    in.target_centideg = 32767;
+    in.time_ms = 65535u;
+    in.hold_ms = 65535u;
+    hex(&payload, "ff7fffffffff");
+    check(same(packed.at, softrig_pack_orient(&in, packed.at, HELD_MAX), &payload), "orient 58");
+    check(softrig_unpack_orient(&out, view(&payload)) == 0, "orient 58");
+    check(out.target_centideg == in.target_centideg, "orient 58");
+    check(out.time_ms == in.time_ms, "orient 58");
+    check(out.hold_ms == in.hold_ms, "orient 58");
+}
+
+static void payload_59(void)
+{
+    static held payload, packed;
+    softrig_orient in, out;
+    in.target_centideg = -32477;
+    in.time_ms = 49224u;
+    in.hold_ms = 61458u;
+    hex(&payload, "238148c012f0");
+    check(same(packed.at, softrig_pack_orient(&in, packed.at, HELD_MAX), &payload), "orient 59");
+    check(softrig_unpack_orient(&out, view(&payload)) == 0, "orient 59");
+    check(out.target_centideg == in.target_centideg, "orient 59");
+    check(out.time_ms == in.time_ms, "orient 59");
+    check(out.hold_ms == in.hold_ms, "orient 59");
+}
+
+static void payload_60(void)
+{
+    static held payload, packed;
+    softrig_ok in, out;
+    in.request = 0u;
+    hex(&payload, "00");
+    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 60");
+    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 60");
+    check(out.request == in.request, "ok 60");
+}
+
+static void payload_61(void)
+{
+    static held payload, packed;
+    softrig_ok in, out;
+    in.request = 255u;
+    hex(&payload, "ff");
+    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 61");
+    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 61");
+    check(out.request == in.request, "ok 61");
+}
+
+static void payload_62(void)
+{
+    static held payload, packed;
+    softrig_ok in, out;
+    in.request = 35u;
+    hex(&payload, "23");
+    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 62");
+    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 62");
+    check(out.request == in.request, "ok 62");
+}
+
+static void payload_63(void)
 {
     static held payload, packed;
     softrig_refused in, out;
@@ -1059,16 +1155,16 @@ static void payload_57(void)
     in.value = -2147483647 - 1;
     in.limit = -2147483647 - 1;
     hex(&payload, "000000000000008000000080");
-    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 57");
-    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 57");
-    check(out.request == in.request, "refused 57");
-    check(out.code == in.code, "refused 57");
-    check(out.channel == in.channel, "refused 57");
-    check(out.value == in.value, "refused 57");
-    check(out.limit == in.limit, "refused 57");
+    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 63");
+    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 63");
+    check(out.request == in.request, "refused 63");
+    check(out.code == in.code, "refused 63");
+    check(out.channel == in.channel, "refused 63");
+    check(out.value == in.value, "refused 63");
+    check(out.limit == in.limit, "refused 63");
 }
 
-static void payload_58(void)
+static void payload_64(void)
 {
     static held payload, packed;
     softrig_refused in, out;
@@ -1078,16 +1174,16 @@ static void payload_58(void)
     in.value = 2147483647;
     in.limit = 2147483647;
     hex(&payload, "ffffffffffffff7fffffff7f");
-    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 58");
-    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 58");
-    check(out.request == in.request, "refused 58");
-    check(out.code == in.code, "refused 58");
-    check(out.channel == in.channel, "refused 58");
-    check(out.value == in.value, "refused 58");
-    check(out.limit == in.limit, "refused 58");
+    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 64");
+    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 64");
+    check(out.request == in.request, "refused 64");
+    check(out.code == in.code, "refused 64");
+    check(out.channel == in.channel, "refused 64");
+    check(out.value == in.value, "refused 64");
+    check(out.limit == in.limit, "refused 64");
 }
 
-static void payload_59(void)
+static void payload_65(void)
 {
     static held payload, packed;
     softrig_refused in, out;
@@ -1097,16 +1193,16 @@ static void payload_59(void)
     in.value = 1021243410;
     in.limit = -104996828;
     hex(&payload, "2391802412f0de3c24e0bdf9");
-    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 59");
-    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 59");
-    check(out.request == in.request, "refused 59");
-    check(out.code == in.code, "refused 59");
-    check(out.channel == in.channel, "refused 59");
-    check(out.value == in.value, "refused 59");
-    check(out.limit == in.limit, "refused 59");
+    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 65");
+    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 65");
+    check(out.request == in.request, "refused 65");
+    check(out.code == in.code, "refused 65");
+    check(out.channel == in.channel, "refused 65");
+    check(out.value == in.value, "refused 65");
+    check(out.limit == in.limit, "refused 65");
 }
 
-static void payload_60(void)
+static void payload_66(void)
 {
     static held payload, packed;
     softrig_status in, out;
@@ -1128,28 +1224,28 @@ static void payload_60(void)
     in.repeated = 0u;
     in.overruns = 0u;
     hex(&payload, "0000000000000000000000000000000000000000008000800080000000000000000000");
-    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 60");
-    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 60");
-    check(out.request == in.request, "status 60");
-    check(out.state == in.state, "status 60");
-    check(out.code == in.code, "status 60");
-    check(out.uptime_ms == in.uptime_ms, "status 60");
-    check(out.lease_ms == in.lease_ms, "status 60");
-    check(out.step == in.step, "status 60");
-    check(out.coils == in.coils, "status 60");
-    check(out.supply_mv == in.supply_mv, "status 60");
-    check(out.current_ma == in.current_ma, "status 60");
-    check(out.board_decidegc == in.board_decidegc, "status 60");
-    check(out.roll_decideg == in.roll_decideg, "status 60");
-    check(out.pitch_decideg == in.pitch_decideg, "status 60");
-    check(out.down == in.down, "status 60");
-    check(out.dropped == in.dropped, "status 60");
-    check(out.forged == in.forged, "status 60");
-    check(out.repeated == in.repeated, "status 60");
-    check(out.overruns == in.overruns, "status 60");
+    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 66");
+    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 66");
+    check(out.request == in.request, "status 66");
+    check(out.state == in.state, "status 66");
+    check(out.code == in.code, "status 66");
+    check(out.uptime_ms == in.uptime_ms, "status 66");
+    check(out.lease_ms == in.lease_ms, "status 66");
+    check(out.step == in.step, "status 66");
+    check(out.coils == in.coils, "status 66");
+    check(out.supply_mv == in.supply_mv, "status 66");
+    check(out.current_ma == in.current_ma, "status 66");
+    check(out.board_decidegc == in.board_decidegc, "status 66");
+    check(out.roll_decideg == in.roll_decideg, "status 66");
+    check(out.pitch_decideg == in.pitch_decideg, "status 66");
+    check(out.down == in.down, "status 66");
+    check(out.dropped == in.dropped, "status 66");
+    check(out.forged == in.forged, "status 66");
+    check(out.repeated == in.repeated, "status 66");
+    check(out.overruns == in.overruns, "status 66");
 }
 
-static void payload_61(void)
+static void payload_67(void)
 {
     static held payload, packed;
     softrig_status in, out;
@@ -1171,28 +1267,28 @@ static void payload_61(void)
     in.repeated = 65535u;
     in.overruns = 65535u;
     hex(&payload, "ffffffffffffffffffffffffffffffffffffffffff7fff7fff7fffffffffffffffffff");
-    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 61");
-    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 61");
-    check(out.request == in.request, "status 61");
-    check(out.state == in.state, "status 61");
-    check(out.code == in.code, "status 61");
-    check(out.uptime_ms == in.uptime_ms, "status 61");
-    check(out.lease_ms == in.lease_ms, "status 61");
-    check(out.step == in.step, "status 61");
-    check(out.coils == in.coils, "status 61");
-    check(out.supply_mv == in.supply_mv, "status 61");
-    check(out.current_ma == in.current_ma, "status 61");
-    check(out.board_decidegc == in.board_decidegc, "status 61");
-    check(out.roll_decideg == in.roll_decideg, "status 61");
-    check(out.pitch_decideg == in.pitch_decideg, "status 61");
-    check(out.down == in.down, "status 61");
-    check(out.dropped == in.dropped, "status 61");
-    check(out.forged == in.forged, "status 61");
-    check(out.repeated == in.repeated, "status 61");
-    check(out.overruns == in.overruns, "status 61");
+    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 67");
+    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 67");
+    check(out.request == in.request, "status 67");
+    check(out.state == in.state, "status 67");
+    check(out.code == in.code, "status 67");
+    check(out.uptime_ms == in.uptime_ms, "status 67");
+    check(out.lease_ms == in.lease_ms, "status 67");
+    check(out.step == in.step, "status 67");
+    check(out.coils == in.coils, "status 67");
+    check(out.supply_mv == in.supply_mv, "status 67");
+    check(out.current_ma == in.current_ma, "status 67");
+    check(out.board_decidegc == in.board_decidegc, "status 67");
+    check(out.roll_decideg == in.roll_decideg, "status 67");
+    check(out.pitch_decideg == in.pitch_decideg, "status 67");
+    check(out.down == in.down, "status 67");
+    check(out.dropped == in.dropped, "status 67");
+    check(out.forged == in.forged, "status 67");
+    check(out.repeated == in.repeated, "status 67");
+    check(out.overruns == in.overruns, "status 67");
 }
 
-static void payload_62(void)
+static void payload_68(void)
 {
     static held payload, packed;
     softrig_status in, out;
@@ -1214,28 +1310,28 @@ static void payload_62(void)
     in.repeated = 32913u;
     in.overruns = 57380u;
     hex(&payload, "239148c012f0debc24e0230148c07bf3918024e02381484012709148c012f0918024e0");
-    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 62");
-    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 62");
-    check(out.request == in.request, "status 62");
-    check(out.state == in.state, "status 62");
-    check(out.code == in.code, "status 62");
-    check(out.uptime_ms == in.uptime_ms, "status 62");
-    check(out.lease_ms == in.lease_ms, "status 62");
-    check(out.step == in.step, "status 62");
-    check(out.coils == in.coils, "status 62");
-    check(out.supply_mv == in.supply_mv, "status 62");
-    check(out.current_ma == in.current_ma, "status 62");
-    check(out.board_decidegc == in.board_decidegc, "status 62");
-    check(out.roll_decideg == in.roll_decideg, "status 62");
-    check(out.pitch_decideg == in.pitch_decideg, "status 62");
-    check(out.down == in.down, "status 62");
-    check(out.dropped == in.dropped, "status 62");
-    check(out.forged == in.forged, "status 62");
-    check(out.repeated == in.repeated, "status 62");
-    check(out.overruns == in.overruns, "status 62");
+    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 68");
+    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 68");
+    check(out.request == in.request, "status 68");
+    check(out.state == in.state, "status 68");
+    check(out.code == in.code, "status 68");
+    check(out.uptime_ms == in.uptime_ms, "status 68");
+    check(out.lease_ms == in.lease_ms, "status 68");
+    check(out.step == in.step, "status 68");
+    check(out.coils == in.coils, "status 68");
+    check(out.supply_mv == in.supply_mv, "status 68");
+    check(out.current_ma == in.current_ma, "status 68");
+    check(out.board_decidegc == in.board_decidegc, "status 68");
+    check(out.roll_decideg == in.roll_decideg, "status 68");
+    check(out.pitch_decideg == in.pitch_decideg, "status 68");
+    check(out.down == in.down, "status 68");
+    check(out.dropped == in.dropped, "status 68");
+    check(out.forged == in.forged, "status 68");
+    check(out.repeated == in.repeated, "status 68");
+    check(out.overruns == in.overruns, "status 68");
 }
 
-static void payload_63(void)
+static void payload_69(void)
 {
     static held bytes, payload, packed;
     softrig_faults in, out;
@@ -1244,15 +1340,15 @@ static void payload_63(void)
     in.count = 0u;
     in.records = view(hex(&bytes, ""));
     hex(&payload, "000000000000");
-    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 63");
-    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 63");
-    check(out.request == in.request, "faults 63");
-    check(out.start == in.start, "faults 63");
-    check(out.count == in.count, "faults 63");
-    check(same_view(out.records, &bytes), "faults 63");
+    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 69");
+    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 69");
+    check(out.request == in.request, "faults 69");
+    check(out.start == in.start, "faults 69");
+    check(out.count == in.count, "faults 69");
+    check(same_view(out.records, &bytes), "faults 69");
 }
 
-static void payload_64(void)
+static void payload_70(void)
 {
     static held bytes, payload, packed;
     softrig_faults in, out;
@@ -1261,15 +1357,15 @@ static void payload_64(void)
     in.count = 255u;
     in.records = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 64");
-    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 64");
-    check(out.request == in.request, "faults 64");
-    check(out.start == in.start, "faults 64");
-    check(out.count == in.count, "faults 64");
-    check(same_view(out.records, &bytes), "faults 64");
+    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 70");
+    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 70");
+    check(out.request == in.request, "faults 70");
+    check(out.start == in.start, "faults 70");
+    check(out.count == in.count, "faults 70");
+    check(same_view(out.records, &bytes), "faults 70");
 }
 
-static void payload_65(void)
+static void payload_71(void)
 {
     static held bytes, payload, packed;
     softrig_faults in, out;
@@ -1278,15 +1374,15 @@ static void payload_65(void)
     in.count = 35u;
     in.records = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "239180f7e62300017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 65");
-    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 65");
-    check(out.request == in.request, "faults 65");
-    check(out.start == in.start, "faults 65");
-    check(out.count == in.count, "faults 65");
-    check(same_view(out.records, &bytes), "faults 65");
+    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 71");
+    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 71");
+    check(out.request == in.request, "faults 71");
+    check(out.start == in.start, "faults 71");
+    check(out.count == in.count, "faults 71");
+    check(same_view(out.records, &bytes), "faults 71");
 }
 
-static void payload_66(void)
+static void payload_72(void)
 {
     static held bytes, payload, packed;
     softrig_settings in, out;
@@ -1296,16 +1392,16 @@ static void payload_66(void)
     in.board_offset_decidegc = -32768;
     in.resistances = view(hex(&bytes, ""));
     hex(&payload, "0000000080");
-    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 66");
-    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 66");
-    check(out.request == in.request, "settings 66");
-    check(out.source == in.source, "settings 66");
-    check(out.node == in.node, "settings 66");
-    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 66");
-    check(same_view(out.resistances, &bytes), "settings 66");
+    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 72");
+    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 72");
+    check(out.request == in.request, "settings 72");
+    check(out.source == in.source, "settings 72");
+    check(out.node == in.node, "settings 72");
+    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 72");
+    check(same_view(out.resistances, &bytes), "settings 72");
 }
 
-static void payload_67(void)
+static void payload_73(void)
 {
     static held bytes, payload, packed;
     softrig_settings in, out;
@@ -1315,16 +1411,16 @@ static void payload_67(void)
     in.board_offset_decidegc = 32767;
     in.resistances = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "ffffffff7fffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 67");
-    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 67");
-    check(out.request == in.request, "settings 67");
-    check(out.source == in.source, "settings 67");
-    check(out.node == in.node, "settings 67");
-    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 67");
-    check(same_view(out.resistances, &bytes), "settings 67");
+    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 73");
+    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 73");
+    check(out.request == in.request, "settings 73");
+    check(out.source == in.source, "settings 73");
+    check(out.node == in.node, "settings 73");
+    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 73");
+    check(same_view(out.resistances, &bytes), "settings 73");
 }
 
-static void payload_68(void)
+static void payload_74(void)
 {
     static held bytes, payload, packed;
     softrig_settings in, out;
@@ -1334,55 +1430,55 @@ static void payload_68(void)
     in.board_offset_decidegc = 24612;
     in.resistances = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "239148246000017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 68");
-    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 68");
-    check(out.request == in.request, "settings 68");
-    check(out.source == in.source, "settings 68");
-    check(out.node == in.node, "settings 68");
-    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 68");
-    check(same_view(out.resistances, &bytes), "settings 68");
+    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 74");
+    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 74");
+    check(out.request == in.request, "settings 74");
+    check(out.source == in.source, "settings 74");
+    check(out.node == in.node, "settings 74");
+    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 74");
+    check(same_view(out.resistances, &bytes), "settings 74");
 }
 
-static void payload_69(void)
+static void payload_75(void)
 {
     static held bytes, payload, packed;
     softrig_coils in, out;
     in.request = 0u;
     in.channels = view(hex(&bytes, ""));
     hex(&payload, "00");
-    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 69");
-    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 69");
-    check(out.request == in.request, "coils 69");
-    check(same_view(out.channels, &bytes), "coils 69");
+    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 75");
+    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 75");
+    check(out.request == in.request, "coils 75");
+    check(same_view(out.channels, &bytes), "coils 75");
 }
 
-static void payload_70(void)
+static void payload_76(void)
 {
     static held bytes, payload, packed;
     softrig_coils in, out;
     in.request = 255u;
     in.channels = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 70");
-    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 70");
-    check(out.request == in.request, "coils 70");
-    check(same_view(out.channels, &bytes), "coils 70");
+    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 76");
+    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 76");
+    check(out.request == in.request, "coils 76");
+    check(same_view(out.channels, &bytes), "coils 76");
 }
 
-static void payload_71(void)
+static void payload_77(void)
 {
     static held bytes, payload, packed;
     softrig_coils in, out;
     in.request = 35u;
     in.channels = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "2300017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 71");
-    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 71");
-    check(out.request == in.request, "coils 71");
-    check(same_view(out.channels, &bytes), "coils 71");
+    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 77");
+    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 77");
+    check(out.request == in.request, "coils 77");
+    check(same_view(out.channels, &bytes), "coils 77");
 }
 
-static void payload_72(void)
+static void payload_78(void)
 {
     static held payload, packed;
     softrig_event in, out;
@@ -1393,17 +1489,17 @@ static void payload_72(void)
     in.value = -2147483647 - 1;
     in.now_ms = 0u;
     hex(&payload, "0000000000000000008000000000");
-    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 72");
-    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 72");
-    check(out.event == in.event, "event 72");
-    check(out.code == in.code, "event 72");
-    check(out.step == in.step, "event 72");
-    check(out.channel == in.channel, "event 72");
-    check(out.value == in.value, "event 72");
-    check(out.now_ms == in.now_ms, "event 72");
+    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 78");
+    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 78");
+    check(out.event == in.event, "event 78");
+    check(out.code == in.code, "event 78");
+    check(out.step == in.step, "event 78");
+    check(out.channel == in.channel, "event 78");
+    check(out.value == in.value, "event 78");
+    check(out.now_ms == in.now_ms, "event 78");
 }
 
-static void payload_73(void)
+static void payload_79(void)
 {
     static held payload, packed;
     softrig_event in, out;
@@ -1414,17 +1510,17 @@ static void payload_73(void)
     in.value = 2147483647;
     in.now_ms = 4294967295u;
     hex(&payload, "ffffffffffffffffff7fffffffff");
-    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 73");
-    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 73");
-    check(out.event == in.event, "event 73");
-    check(out.code == in.code, "event 73");
-    check(out.step == in.step, "event 73");
-    check(out.channel == in.channel, "event 73");
-    check(out.value == in.value, "event 73");
-    check(out.now_ms == in.now_ms, "event 73");
+    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 79");
+    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 79");
+    check(out.event == in.event, "event 79");
+    check(out.code == in.code, "event 79");
+    check(out.step == in.step, "event 79");
+    check(out.channel == in.channel, "event 79");
+    check(out.value == in.value, "event 79");
+    check(out.now_ms == in.now_ms, "event 79");
 }
 
-static void payload_74(void)
+static void payload_80(void)
 {
     static held payload, packed;
     softrig_event in, out;
@@ -1435,17 +1531,17 @@ static void payload_74(void)
     in.value = 1727496337;
     in.now_ms = 3454992675u;
     hex(&payload, "23918024e0239180f7662301efcd");
-    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 74");
-    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 74");
-    check(out.event == in.event, "event 74");
-    check(out.code == in.code, "event 74");
-    check(out.step == in.step, "event 74");
-    check(out.channel == in.channel, "event 74");
-    check(out.value == in.value, "event 74");
-    check(out.now_ms == in.now_ms, "event 74");
+    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 80");
+    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 80");
+    check(out.event == in.event, "event 80");
+    check(out.code == in.code, "event 80");
+    check(out.step == in.step, "event 80");
+    check(out.channel == in.channel, "event 80");
+    check(out.value == in.value, "event 80");
+    check(out.now_ms == in.now_ms, "event 80");
 }
 
-static void payload_75(void)
+static void payload_81(void)
 {
     static held bytes, payload, packed;
     softrig_telemetry in, out;
@@ -1455,16 +1551,16 @@ static void payload_75(void)
     in.now_ms = 0u;
     in.values = view(hex(&bytes, ""));
     hex(&payload, "00000000000000");
-    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 75");
-    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 75");
-    check(out.slot == in.slot, "telemetry 75");
-    check(out.form == in.form, "telemetry 75");
-    check(out.count == in.count, "telemetry 75");
-    check(out.now_ms == in.now_ms, "telemetry 75");
-    check(same_view(out.values, &bytes), "telemetry 75");
+    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 81");
+    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 81");
+    check(out.slot == in.slot, "telemetry 81");
+    check(out.form == in.form, "telemetry 81");
+    check(out.count == in.count, "telemetry 81");
+    check(out.now_ms == in.now_ms, "telemetry 81");
+    check(same_view(out.values, &bytes), "telemetry 81");
 }
 
-static void payload_76(void)
+static void payload_82(void)
 {
     static held bytes, payload, packed;
     softrig_telemetry in, out;
@@ -1474,16 +1570,16 @@ static void payload_76(void)
     in.now_ms = 4294967295u;
     in.values = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "04ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 76");
-    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 76");
-    check(out.slot == in.slot, "telemetry 76");
-    check(out.form == in.form, "telemetry 76");
-    check(out.count == in.count, "telemetry 76");
-    check(out.now_ms == in.now_ms, "telemetry 76");
-    check(same_view(out.values, &bytes), "telemetry 76");
+    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 82");
+    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 82");
+    check(out.slot == in.slot, "telemetry 82");
+    check(out.form == in.form, "telemetry 82");
+    check(out.count == in.count, "telemetry 82");
+    check(out.now_ms == in.now_ms, "telemetry 82");
+    check(same_view(out.values, &bytes), "telemetry 82");
 }
 
-static void payload_77(void)
+static void payload_83(void)
 {
     static held bytes, payload, packed;
     softrig_telemetry in, out;
@@ -1493,16 +1589,16 @@ static void payload_77(void)
     in.now_ms = 2042486820u;
     in.values = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "00914824e0bd7900017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 77");
-    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 77");
-    check(out.slot == in.slot, "telemetry 77");
-    check(out.form == in.form, "telemetry 77");
-    check(out.count == in.count, "telemetry 77");
-    check(out.now_ms == in.now_ms, "telemetry 77");
-    check(same_view(out.values, &bytes), "telemetry 77");
+    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 83");
+    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 83");
+    check(out.slot == in.slot, "telemetry 83");
+    check(out.form == in.form, "telemetry 83");
+    check(out.count == in.count, "telemetry 83");
+    check(out.now_ms == in.now_ms, "telemetry 83");
+    check(same_view(out.values, &bytes), "telemetry 83");
 }
 
-static void payload_78(void)
+static void payload_84(void)
 {
     static held payload, packed;
     softrig_beacon in, out;
@@ -1512,16 +1608,16 @@ static void payload_78(void)
     in.supply_mv = 0u;
     in.current_ma = 0u;
     hex(&payload, "0000000000000000");
-    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 78");
-    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 78");
-    check(out.state == in.state, "beacon 78");
-    check(out.code == in.code, "beacon 78");
-    check(out.step == in.step, "beacon 78");
-    check(out.supply_mv == in.supply_mv, "beacon 78");
-    check(out.current_ma == in.current_ma, "beacon 78");
+    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 84");
+    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 84");
+    check(out.state == in.state, "beacon 84");
+    check(out.code == in.code, "beacon 84");
+    check(out.step == in.step, "beacon 84");
+    check(out.supply_mv == in.supply_mv, "beacon 84");
+    check(out.current_ma == in.current_ma, "beacon 84");
 }
 
-static void payload_79(void)
+static void payload_85(void)
 {
     static held payload, packed;
     softrig_beacon in, out;
@@ -1531,16 +1627,16 @@ static void payload_79(void)
     in.supply_mv = 65535u;
     in.current_ma = 65535u;
     hex(&payload, "ffffffffffffffff");
-    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 79");
-    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 79");
-    check(out.state == in.state, "beacon 79");
-    check(out.code == in.code, "beacon 79");
-    check(out.step == in.step, "beacon 79");
-    check(out.supply_mv == in.supply_mv, "beacon 79");
-    check(out.current_ma == in.current_ma, "beacon 79");
+    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 85");
+    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 85");
+    check(out.state == in.state, "beacon 85");
+    check(out.code == in.code, "beacon 85");
+    check(out.step == in.step, "beacon 85");
+    check(out.supply_mv == in.supply_mv, "beacon 85");
+    check(out.current_ma == in.current_ma, "beacon 85");
 }
 
-static void payload_80(void)
+static void payload_86(void)
 {
     static held payload, packed;
     softrig_beacon in, out;
@@ -1550,16 +1646,16 @@ static void payload_80(void)
     in.supply_mv = 61458u;
     in.current_ma = 32913u;
     hex(&payload, "239148c012f09180");
-    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 80");
-    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 80");
-    check(out.state == in.state, "beacon 80");
-    check(out.code == in.code, "beacon 80");
-    check(out.step == in.step, "beacon 80");
-    check(out.supply_mv == in.supply_mv, "beacon 80");
-    check(out.current_ma == in.current_ma, "beacon 80");
+    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 86");
+    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 86");
+    check(out.state == in.state, "beacon 86");
+    check(out.code == in.code, "beacon 86");
+    check(out.step == in.step, "beacon 86");
+    check(out.supply_mv == in.supply_mv, "beacon 86");
+    check(out.current_ma == in.current_ma, "beacon 86");
 }
 
-static void payload_81(void)
+static void payload_87(void)
 {
     static held payload, packed;
     softrig_beacon_coils in, out;
@@ -1569,16 +1665,16 @@ static void payload_81(void)
     in.temperature_a_decidegc = -32768;
     in.temperature_b_decidegc = -32768;
     hex(&payload, "00000000800080");
-    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 81");
-    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 81");
-    check(out.group == in.group, "beacon_coils 81");
-    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 81");
-    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 81");
-    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 81");
-    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 81");
+    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 87");
+    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 87");
+    check(out.group == in.group, "beacon_coils 87");
+    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 87");
+    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 87");
+    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 87");
+    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 87");
 }
 
-static void payload_82(void)
+static void payload_88(void)
 {
     static held payload, packed;
     softrig_beacon_coils in, out;
@@ -1588,16 +1684,16 @@ static void payload_82(void)
     in.temperature_a_decidegc = 32767;
     in.temperature_b_decidegc = 32767;
     hex(&payload, "0f6464ff7fff7f");
-    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 82");
-    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 82");
-    check(out.group == in.group, "beacon_coils 82");
-    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 82");
-    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 82");
-    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 82");
-    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 82");
+    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 88");
+    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 88");
+    check(out.group == in.group, "beacon_coils 88");
+    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 88");
+    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 88");
+    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 88");
+    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 88");
 }
 
-static void payload_83(void)
+static void payload_89(void)
 {
     static held payload, packed;
     softrig_beacon_coils in, out;
@@ -1607,16 +1703,16 @@ static void payload_83(void)
     in.temperature_a_decidegc = 24612;
     in.temperature_b_decidegc = -32477;
     hex(&payload, "031e4124602381");
-    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 83");
-    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 83");
-    check(out.group == in.group, "beacon_coils 83");
-    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 83");
-    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 83");
-    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 83");
-    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 83");
+    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 89");
+    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 89");
+    check(out.group == in.group, "beacon_coils 89");
+    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 89");
+    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 89");
+    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 89");
+    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 89");
 }
 
-static void payload_84(void)
+static void payload_90(void)
 {
     static held payload, packed;
     softrig_clock in, out;
@@ -1624,14 +1720,14 @@ static void payload_84(void)
     in.received_ms = 0u;
     in.sent_ms = 0u;
     hex(&payload, "000000000000000000000000");
-    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 84");
-    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 84");
-    check(out.host_us == in.host_us, "clock 84");
-    check(out.received_ms == in.received_ms, "clock 84");
-    check(out.sent_ms == in.sent_ms, "clock 84");
+    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 90");
+    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 90");
+    check(out.host_us == in.host_us, "clock 90");
+    check(out.received_ms == in.received_ms, "clock 90");
+    check(out.sent_ms == in.sent_ms, "clock 90");
 }
 
-static void payload_85(void)
+static void payload_91(void)
 {
     static held payload, packed;
     softrig_clock in, out;
@@ -1639,14 +1735,14 @@ static void payload_85(void)
     in.received_ms = 4294967295u;
     in.sent_ms = 4294967295u;
     hex(&payload, "ffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 85");
-    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 85");
-    check(out.host_us == in.host_us, "clock 85");
-    check(out.received_ms == in.received_ms, "clock 85");
-    check(out.sent_ms == in.sent_ms, "clock 85");
+    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 91");
+    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 91");
+    check(out.host_us == in.host_us, "clock 91");
+    check(out.received_ms == in.received_ms, "clock 91");
+    check(out.sent_ms == in.sent_ms, "clock 91");
 }
 
-static void payload_86(void)
+static void payload_92(void)
 {
     static held payload, packed;
     softrig_clock in, out;
@@ -1654,11 +1750,11 @@ static void payload_86(void)
     in.received_ms = 3168727058u;
     in.sent_ms = 2042486820u;
     hex(&payload, "2301efcd12f0debc24e0bd79");
-    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 86");
-    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 86");
-    check(out.host_us == in.host_us, "clock 86");
-    check(out.received_ms == in.received_ms, "clock 86");
-    check(out.sent_ms == in.sent_ms, "clock 86");
+    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 92");
+    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 92");
+    check(out.host_us == in.host_us, "clock 92");
+    check(out.received_ms == in.received_ms, "clock 92");
+    check(out.sent_ms == in.sent_ms, "clock 92");
 }
 
 int main(void)
@@ -1750,6 +1846,12 @@ int main(void)
     payload_84();
     payload_85();
     payload_86();
+    payload_87();
+    payload_88();
+    payload_89();
+    payload_90();
+    payload_91();
+    payload_92();
     { static const whole told = {0, 1, 0, 0, 0, 0u, 0u, 0, "", "239180f7e62301efcd12f0debc24e0bd79", "20010000239180f7e62301efcd12f0debc24e0bd7992d7a9ee", "0320010116239180f7e62301efcd12f0debc24e0bd7992d7a9ee00"}; frame(&told, "hello"); }
     { static const whole told = {0, 2, 0, 0, 0, 0u, 0u, 1, "", "2301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000", "200200002301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f500032ae7a7c", "03200201352301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7905017f80ff0553544f500532ae7a7c00"}; frame(&told, "identity"); }
     { static const whole told = {2, 2, 0, 0, 9, 0u, 0u, 1, "", "2301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000", "22020000092301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000435cac63", "0322020136092301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7905017f80ff0553544f5005435cac6300"}; frame(&told, "identity"); }

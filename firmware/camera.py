@@ -1,0 +1,43 @@
+"""The angle of the object that a camera sees: the newest frame, whether it is to be trusted, and when it was lost."""
+
+from protocol.variables import UNKNOWN_ANGLE
+
+AGAIN_STEPS = 20  # control steps between two looks at a camera that does not answer
+
+
+class Camera:
+    """What `driver` sees; `known`: the angle is at most `stale_ms` old; `fresh`: it came in this control step."""
+
+    def __init__(self, driver, stale_ms: int) -> None:
+        self.known = False
+        self.fresh = False
+        self.centideg = 0
+        self.seen_ms = 0  # when it was last seen
+        self._driver = driver
+        self._stale_ms = stale_ms
+        self._pause = 0
+
+    def look(self, now_ms: int) -> None:
+        """Take a new frame, if there is one."""
+        self.fresh = False
+        if self._pause:
+            self._pause -= 1
+        else:
+            self._take(now_ms)
+        if self.known and now_ms - self.seen_ms > self._stale_ms:
+            self.known = False
+
+    def object_centideg(self) -> int:
+        """Return the angle, or UNKNOWN_ANGLE."""
+        return self.centideg if self.known else UNKNOWN_ANGLE
+
+    def _take(self, now_ms: int) -> None:
+        try:
+            is_new = self._driver.read()
+        except OSError:
+            self._pause = AGAIN_STEPS  # else its silence would take the time of every step
+            return
+        if is_new and self._driver.seen:
+            self.fresh = self.known = True
+            self.centideg = self._driver.centideg
+            self.seen_ms = now_ms

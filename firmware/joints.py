@@ -1,0 +1,134 @@
+"""The only code that drives a joint: along a straight line to its angle, there for as long as was ordered, then limp.
+
+Whatever is asked, no joint is told an angle outside its range, faster than its slew limit, or longer than its order.
+Orders are checked whole before any of it is taken. A limp joint sets out from where it is measured and takes the time
+that its slew limit needs, so that it never jumps. A mask has the channel numbers of the profile: coils come first.
+"""
+
+from array import array
+
+from firmware.channels import Refused
+from protocol import codes
+from protocol.variables import UNKNOWN_ANGLE
+
+LIMP = UNKNOWN_ANGLE
+
+
+class Joints:
+    """The joints of one robot, each with its `servos` driver; `first` is the channel of the first one."""
+
+    def __init__(self, servos: list, first: int, limits) -> None:
+        count = len(servos)
+        self.count = count
+        self.first = first
+        self.mask = (1 << first + count) - (1 << first)
+        self.on_mask = 0  # channels of the joints that are driven
+        self.commanded_centideg = array("h", [LIMP] * count)
+        self.measured_centideg = array("h", [0] * count)  # see jointsense.py
+        self.current_ma = array("H", [0] * count)
+        self._servos = servos
+        self._limits = limits
+        self._written = array("h", [LIMP] * count)
+        self._start_centideg = array("h", [0] * count)
+        self._target_centideg = array("h", [0] * count)
+        self._begin_ms = array("i", [0] * count)
+        self._over_ms = array("i", [0] * count)
+        self._end_ms = array("i", [0] * count)
+
+    def move(self, mask: int, target_centideg: int, over_ms: int, hold_ms: int, now_ms: int) -> None:
+        """Turn these joints to an angle within that time and hold it for so long, or raise Refused."""
+        self._check(mask, target_centideg, over_ms, hold_ms)
+        for joint in range(self.count):
+            if mask >> self.first + joint & 1:
+                self._begin(joint, target_centideg, over_ms, hold_ms, now_ms)
+
+    def steer(self, joint: int, centideg: int, end_ms: int) -> None:
+        """Have a joint that is driven stand at an angle from now on, until that time; the caller keeps it in range."""
+        self._start_centideg[joint] = self._target_centideg[joint] = centideg
+        self._over_ms[joint] = 0
+        self._end_ms[joint] = end_ms
+        self.commanded_centideg[joint] = centideg
+
+    def off(self, mask: int) -> None:
+        """Let these joints go limp."""
+        for joint in range(self.count):
+            if mask >> self.first + joint & 1:
+                self.commanded_centideg[joint] = LIMP
+        self.on_mask &= ~mask
+        self.write()
+
+    def all_off(self) -> None:
+        """Let every joint go limp."""
+        self.off(self.mask)
+
+    def update(self, now_ms: int) -> None:
+        """Move on along each order's line; end what has run out."""
+        for joint in range(self.count):
+            if self.commanded_centideg[joint] != LIMP:
+                self._follow(joint, now_ms)
+
+    def write(self) -> None:
+        """Bring the servos' pulses in line with the orders; a joint that is limp has none."""
+        for joint in range(self.count):
+            centideg = self.commanded_centideg[joint]
+            if centideg != self._written[joint]:
+                self._written[joint] = centideg
+                if centideg == LIMP:
+                    self._servos[joint].off()
+                else:
+                    self._servos[joint].pulse(self._limits.width_ns(centideg))
+
+    def moving(self, now_ms: int) -> bool:
+        """Return whether a joint is still on its way."""
+        for joint in range(self.count):
+            if self.commanded_centideg[joint] != LIMP and now_ms - self._begin_ms[joint] < self._over_ms[joint]:
+                return True
+        return False
+
+    def _check(self, mask: int, target_centideg: int, over_ms: int, hold_ms: int) -> None:
+        limits = self._limits
+        if not mask or mask & ~self.mask:
+            raise Refused(codes.UNKNOWN_CHANNEL, 255, mask, self.mask)
+        channel = self.first
+        while not mask >> channel & 1:
+            channel += 1
+        if not limits.least_centideg <= target_centideg <= limits.most_centideg:
+            limit = limits.least_centideg if target_centideg < 0 else limits.most_centideg
+            raise Refused(codes.RANGE_LIMIT, channel, target_centideg, limit)
+        if hold_ms > limits.hold_max_ms:
+            raise Refused(codes.HOLD_LIMIT, channel, hold_ms, limits.hold_max_ms)
+        for joint in range(self.count):
+            if mask >> self.first + joint & 1 and self.commanded_centideg[joint] != LIMP:
+                self._check_speed(joint, target_centideg, over_ms)
+
+    def _check_speed(self, joint: int, target_centideg: int, over_ms: int) -> None:
+        way_centideg = abs(target_centideg - self.commanded_centideg[joint])
+        if way_centideg * 1000 > self._limits.slew_centideg_per_s * over_ms:
+            speed = way_centideg * 1000 // max(1, over_ms)
+            raise Refused(codes.SLEW_LIMIT, self.first + joint, speed, self._limits.slew_centideg_per_s)
+
+    def _begin(self, joint: int, target_centideg: int, over_ms: int, hold_ms: int, now_ms: int) -> None:
+        start_centideg = self.commanded_centideg[joint]
+        if start_centideg == LIMP:
+            limits = self._limits
+            start_centideg = min(max(self.measured_centideg[joint], limits.least_centideg), limits.most_centideg)
+            way_centideg = abs(target_centideg - start_centideg)
+            over_ms = max(over_ms, way_centideg * 1000 // limits.slew_centideg_per_s + 1)
+        self._start_centideg[joint] = start_centideg
+        self._target_centideg[joint] = target_centideg
+        self._begin_ms[joint] = now_ms
+        self._over_ms[joint] = over_ms
+        self._end_ms[joint] = now_ms + over_ms + hold_ms
+        self.commanded_centideg[joint] = start_centideg
+        self.on_mask |= 1 << self.first + joint
+
+    def _follow(self, joint: int, now_ms: int) -> None:
+        if now_ms - self._end_ms[joint] >= 0:
+            self.commanded_centideg[joint] = LIMP
+            self.on_mask &= ~(1 << self.first + joint)
+            return
+        passed_ms, over_ms = now_ms - self._begin_ms[joint], self._over_ms[joint]
+        start_centideg, target_centideg = self._start_centideg[joint], self._target_centideg[joint]
+        if passed_ms < over_ms:
+            target_centideg = start_centideg + (target_centideg - start_centideg) * passed_ms // over_ms
+        self.commanded_centideg[joint] = target_centideg

@@ -1,0 +1,71 @@
+"""What a joint's servo says of itself, through a converter: its angle by its potentiometer, its current by an amplifier.
+
+A joint that takes its stall current for long cannot turn as it is told; a potentiometer that reads what none of its
+positions gives is broken or cut off.
+"""
+
+from array import array
+
+from firmware.channels import NONE
+from protocol import codes
+
+BESIDE_COUNTS = 205  # beyond either end of the potentiometer's way: no position of it
+BROKEN_STEPS = 20  # control steps that a reading must be impossible before it is believed
+
+
+class JointSense:
+    """Reads the joints of one robot; `channel` and `value` are those of the last fault."""
+
+    def __init__(self, converter, joints, profile) -> None:
+        self.channel = 255
+        self.value = 0
+        self._converter = converter
+        self._joints = joints
+        self._rows = profile.joints
+        self._limits = profile.servo
+        self._counts = array("H", [0] * joints.count)
+        self._broken = array("B", [0] * joints.count)
+        self._strained_ms = array("i", [0] * joints.count)
+
+    def read(self, now_ms: int) -> None:
+        """Read angle and current of each joint."""
+        joints, limits, converter = self._joints, self._limits, self._converter
+        for joint in range(joints.count):
+            row = self._rows[joint]
+            joints.current_ma[joint] = converter.counts(row.current) * limits.ua_per_count // 1000
+            counts = converter.counts(row.angle)
+            self._counts[joint] = counts
+            if limits.low_counts - BESIDE_COUNTS <= counts <= limits.high_counts + BESIDE_COUNTS:
+                self._broken[joint] = 0
+                joints.measured_centideg[joint] = limits.angle_centideg(counts)
+            elif self._broken[joint] < BROKEN_STEPS:
+                self._broken[joint] += 1
+            if joints.current_ma[joint] < limits.stall_ma or not joints.on_mask >> joints.first + joint & 1:
+                self._strained_ms[joint] = now_ms
+
+    def check(self, now_ms: int) -> int:
+        """Return the code of a fault, or 0."""
+        joints = self._joints
+        joint = self.broken()
+        if joint != NONE:
+            return self._fault(codes.JOINT, joint, self._counts[joint])
+        for joint in range(joints.count):
+            if now_ms - self._strained_ms[joint] > self._limits.stall_ms:
+                return self._fault(codes.STALL, joint, joints.current_ma[joint])
+        return 0
+
+    def broken(self) -> int:
+        """Return a joint whose angle cannot be read, or NONE."""
+        for joint in range(self._joints.count):
+            if self._broken[joint] >= BROKEN_STEPS:
+                return joint
+        return NONE
+
+    def counts(self, channel: int) -> int:
+        """Return the last reading of a joint's potentiometer."""
+        return self._counts[channel - self._joints.first]
+
+    def _fault(self, code: int, joint: int, value: int) -> int:
+        self.channel = self._joints.first + joint
+        self.value = value
+        return code

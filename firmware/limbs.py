@@ -1,0 +1,86 @@
+"""Everything of a robot that turns joints: their orders, what is measured of them, the camera and the closed loop.
+
+Loaded only where the profile names joints: a robot of coils has that memory for itself.
+
+    limbs = Limbs(board, profile)
+    limbs.look(now_ms)
+    code = limbs.drive(now_ms, powered)
+"""
+
+from firmware.camera import Camera
+from firmware.channels import NONE, Refused
+from firmware.joints import Joints
+from firmware.jointsense import JointSense
+from firmware.orient import Orient
+from firmware.selftest import NO_JOINT
+from protocol import codes
+
+
+class Limbs:
+    """The joints of one robot and what moves them; `channel` and `value` are those of the last fault."""
+
+    def __init__(self, board, profile) -> None:
+        servos = [board.servo(joint.pin, profile.servo.pulse_hz) for joint in profile.joints]
+        self.joints = Joints(servos, len(profile.coils), profile.servo)
+        self.sense = JointSense(board.adc(), self.joints, profile)
+        self.camera = Camera(board.camera(profile.camera.address), profile.camera.stale_ms) if profile.camera else None
+        self.orient = None
+        if self.camera and profile.orient:
+            self.orient = Orient(self.joints, self.camera, profile.orient, profile.servo)
+        self._hold_max_ms = profile.servo.hold_max_ms
+
+    def look(self, now_ms: int) -> None:
+        """Read what is measured."""
+        self.sense.read(now_ms)
+        if self.camera:
+            self.camera.look(now_ms)
+
+    def drive(self, now_ms: int, powered: bool) -> int:
+        """Bring every joint up to its order; return the code of a fault, or 0."""
+        if self.orient and self.orient.active:
+            self.orient.update(now_ms)
+        self.joints.update(now_ms)
+        self.joints.write()
+        return self.sense.check(now_ms) if powered else 0
+
+    def move(self, mask: int, target_centideg: int, over_ms: int, hold_ms: int, now_ms: int) -> None:
+        """Move joints as ordered, or raise Refused; a loop that held them ends."""
+        self.joints.move(mask, target_centideg, over_ms, hold_ms, now_ms)
+        if self.orient:
+            self.orient.cancel()
+
+    def turn(self, target_centideg: int, time_ms: int, hold_ms: int, now_ms: int) -> None:
+        """Regulate the object's angle, or raise Refused."""
+        if not self.orient:
+            raise Refused(codes.NO_CAMERA)
+        self.orient.begin(target_centideg, time_ms, hold_ms, now_ms)
+
+    def play_move(self, mask: int, target_centideg: int, over_ms: int, now_ms: int) -> None:
+        """Move joints as a program orders: they hold as long as any order may."""
+        self.move(mask, target_centideg, over_ms, self._hold_max_ms, now_ms)
+
+    def play_turn(self, target_centideg: int, time_ms: int, now_ms: int) -> None:
+        """Regulate as a program orders."""
+        self.turn(target_centideg, time_ms, self._hold_max_ms, now_ms)
+
+    def busy(self, now_ms: int) -> bool:
+        """Return whether an order is still being carried out; holding is none."""
+        return self.joints.moving(now_ms) or (self.orient is not None and self.orient.active)
+
+    def all_off(self) -> None:
+        """Let every joint go limp."""
+        if self.orient:
+            self.orient.cancel()
+        self.joints.all_off()
+
+    def broken_channel(self) -> int:
+        """Return the channel of a joint whose angle cannot be read, or NO_JOINT."""
+        joint = self.sense.broken()
+        return NO_JOINT if joint == NONE else self.joints.first + joint
+
+    def lost(self) -> bool:
+        """Return, once, whether the loop has ended because the camera was lost."""
+        if self.orient is None or not self.orient.lost:
+            return False
+        self.orient.lost = False
+        return True
