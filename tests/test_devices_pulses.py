@@ -35,6 +35,15 @@ def test_what_is_no_servo_pulse_moves_nothing(servo, width_us, period_us):
     assert servo.commanded_deg(1_000_000) is None
 
 
+@pytest.mark.parametrize(("width_us", "angle_deg"), [(500, -90), (2500, 90)])
+def test_the_widest_and_the_narrowest_pulse_are_followed_200_times_a_second(servo, width_us, angle_deg):
+    for turn in range(10):
+        servo.pulsed(5_000 * turn, width_us, 5_000.0)
+
+    assert servo.commanded_deg(width_us) == pytest.approx(angle_deg)
+    assert servo.commanded_deg(50_000) == pytest.approx(angle_deg)
+
+
 @pytest.mark.parametrize("period_us", [25_000, 3004])
 def test_the_slowest_and_the_fastest_pulses_are_followed(servo, period_us):
     servo.pulsed(0, 1500, period_us)
@@ -60,11 +69,30 @@ def test_a_change_within_the_dead_band_moves_nothing(servo):
     assert servo.commanded_deg(60_000) == pytest.approx(0.45)
 
 
+def test_a_digital_servo_has_a_narrower_dead_band():
+    servo = Servo(dead_band_us=1.0)
+    servo.pulsed(0, 1500, FRAME_US)
+    servo.pulsed(20_000, 1500.9, FRAME_US)
+    assert servo.commanded_deg(40_000) == pytest.approx(0)
+
+    servo.pulsed(40_000, 1501, FRAME_US)
+
+    assert servo.commanded_deg(60_000) == pytest.approx(0.09)
+
+
 def test_a_servo_goes_limp_100_ms_after_its_last_pulse(servo):
     servo.pulsed(0, 1500, FRAME_US)
     servo.pulsed(40_000, 0, FRAME_US)
 
     assert servo.commanded_deg(139_999) == pytest.approx(0)
+    assert servo.commanded_deg(140_000) is None
+
+
+def test_being_told_again_that_there_are_none_does_not_put_that_off(servo):
+    servo.pulsed(0, 1500, FRAME_US)
+    for turn in range(6):
+        servo.pulsed(40_000 + 20_000 * turn, 0, FRAME_US)
+
     assert servo.commanded_deg(140_000) is None
 
 

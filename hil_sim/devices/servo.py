@@ -40,6 +40,8 @@ class Servo:
     def pulsed(self, from_us: int, width_us: float, period_us: float) -> None:
         """Pulses of this width and period come from then on; a pulse is known at its end."""
         valid = self._measured(width_us) and 1e6 / RATE_MAX_HZ <= period_us <= 1e6 / RATE_MIN_HZ
+        if not valid and self._coming and self._coming[-1][1] is None:
+            return  # still none: it waits since the last one
         known_us = from_us + round(width_us) if valid else from_us + LIMP_AFTER_US
         while self._coming and self._coming[-1][0] > from_us:
             self._coming.pop()  # never measured: its pulse does not come any more
