@@ -2,7 +2,7 @@
 
 answers = Answers()
 answers.expect(seq, Asked("status_request", now_ms, {}, keeper.told_ms))
-taken = answers.take(kind, payload, labels, now_ms)
+taken = answers.take(kind, payload, parts, now_ms)
 answers.said[seq]
 """
 
@@ -14,15 +14,16 @@ from typing import Any, NamedTuple
 from host.coils import CoilState, coils_of
 from host.errors import Refused
 from host.kept import FaultPage, Settings, faults_of, settings_of
+from host.profile import Parts
 from host.records import Status, coil_name, status_of
 from protocol import messages
 
 Answer = Status | FaultPage | Settings | dict[str, CoilState]
 
-DECODERS: dict[int, Callable[[bytes, tuple[str, ...]], Answer]] = {
-    messages.FAULTS.number: faults_of,
-    messages.SETTINGS.number: settings_of,
-    messages.COILS.number: coils_of,
+DECODERS: dict[int, Callable[[bytes, Parts], Answer]] = {
+    messages.FAULTS.number: lambda payload, parts: faults_of(payload, parts.channels),
+    messages.SETTINGS.number: lambda payload, parts: settings_of(payload, parts.coils),
+    messages.COILS.number: lambda payload, parts: coils_of(payload, parts.coils),
 }
 
 
@@ -59,23 +60,23 @@ class Answers:
         """Return the order that has waited longest, or None."""
         return next(iter(self._asked.values()), None)
 
-    def take(self, kind: int, payload: bytes, labels: tuple[str, ...], now_ms: int) -> Taken | None:
+    def take(self, kind: int, payload: bytes, parts: Parts, now_ms: int) -> Taken | None:
         """Take a frame, and return what it answers; None when it is no answer. ValueError: its payload is damaged."""
         if kind == messages.OK.number:
             return self._taken(messages.OK.unpack(payload).request, None)
         if kind == messages.STATUS.number:
-            return self._taken(messages.STATUS.unpack(payload).request, status_of(payload, labels, now_ms))
+            return self._taken(messages.STATUS.unpack(payload).request, status_of(payload, parts.channels, now_ms))
         if kind == messages.REFUSED.number:
-            return self._refused(messages.REFUSED.unpack(payload), labels)
+            return self._refused(messages.REFUSED.unpack(payload), parts)
         if kind in DECODERS:
-            answer = DECODERS[kind](payload, labels)
+            answer = DECODERS[kind](payload, parts)
             return self._taken(payload[0], answer)
         return None
 
-    def _refused(self, row: Any, labels: tuple[str, ...]) -> Taken:
+    def _refused(self, row: Any, parts: Parts) -> Taken:
         asked = self._asked.get(row.request)
-        name = asked.name if asked else "an order"
-        return self._taken(row.request, Refused(name, row.code, row.value, row.limit, coil_name(row.channel, labels)))
+        name, label = asked.name if asked else "an order", coil_name(row.channel, parts.channels)
+        return self._taken(row.request, Refused(name, row.code, row.value, row.limit, label, parts.kind(label)))
 
     def _taken(self, seq: int, answer: Refused | Answer | None) -> Taken:
         asked = self._asked.pop(seq, None)

@@ -54,14 +54,19 @@ class NotOurs(NoRobot):
 
 
 class Refused(SoftrigError):
-    """The robot refused an order; nothing changed. `row` is its row in the table of codes."""
+    """The robot refused an order; nothing changed. `row` is its row in the table of codes.
+
+    `coil` is the label of the channel that it is about, of that `kind`: coil or joint.
+    """
 
     exit_code = 4
 
-    def __init__(self, request: str, code: int, value: int = 0, limit: int = 0, coil: str | None = None) -> None:
+    def __init__(
+        self, request: str, code: int, value: int = 0, limit: int = 0, coil: str | None = None, kind: str = "coil"
+    ) -> None:
         self.code, self.value, self.limit, self.coil = code, value, limit, coil
         self.row = causes.row(code)
-        where = f" (coil {coil})" if coil else ""
+        where = f" ({kind} {coil})" if coil else ""
         super().__init__(f"{request}{where} refused: {_told(code, value, limit)}")
 
 
@@ -89,14 +94,14 @@ class DictionaryMismatch(Mismatch):
 
 
 class RobotFault(SoftrigError):
-    """The robot tripped; `row` is the row of its fault in the table of codes."""
+    """The robot tripped; `row` is the row of its fault in the table of codes, `coil` as with a refusal."""
 
     exit_code = 6
 
-    def __init__(self, code: int, value: int = 0, coil: str | None = None) -> None:
+    def __init__(self, code: int, value: int = 0, coil: str | None = None, kind: str = "coil") -> None:
         self.code, self.value, self.coil = code, value, coil
         self.row = causes.row(code)
-        super().__init__(f"the robot tripped{f' (coil {coil})' if coil else ''}: {_told(code, value)}")
+        super().__init__(f"the robot tripped{f' ({kind} {coil})' if coil else ''}: {_told(code, value)}")
 
 
 class LinkLost(SoftrigError):

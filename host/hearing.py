@@ -15,7 +15,7 @@ from host.answers import Answers
 from host.errors import SoftrigError
 from host.handshake import Handshake
 from host.pages import Pages
-from host.profile import Profile
+from host.profile import Parts, Profile
 from host.recognition import changed, restarted
 from host.records import Record, Status, Telemetry, event_of, state_name, stopped_of
 from host.selections import Selections, selection_of
@@ -30,7 +30,7 @@ class Hearing:
     def __init__(self, handshake: Handshake, now_us: int) -> None:
         self.handshake = handshake
         self.profile: Profile | None = None  # the robot's, once it is known
-        self.labels: tuple[str, ...] = ()  # of its coils
+        self.parts = Parts()  # of the robot
         self.answers = Answers()
         self.keeper = Timekeeper()
         self.silence = Silence(now_us // 1000)
@@ -84,17 +84,17 @@ class Hearing:
         """Take what the robot says by itself."""
         now_ms = now_us // 1000
         if kind == messages.EVENT.number:
-            event = event_of(payload, self.labels, now_ms)
+            event = event_of(payload, self.parts.channels, now_ms)
             self.holds_lease = self.holds_lease and event.event not in ("tripped", "disarmed")
             if self.keeper.happened(event.now_ms, now_us, len(payload)):
                 self.trouble = self.trouble or restarted(event.event)
             return event
         if kind == messages.STOPPED.number:
-            stopped = stopped_of(payload, self.labels, now_ms)
+            stopped = stopped_of(payload, self.parts.channels, now_ms)
             self.stopped, self.holds_lease = True, False
             self._compare(stopped.now_ms, self._lately(), stopped.state, now_us, len(payload))
             return stopped
-        told = self.selections.take(payload, self.labels, now_ms)
+        told = self.selections.take(payload, self.parts, now_ms)
         if told is None:
             return None
         self.told_ms = now_ms
@@ -106,7 +106,7 @@ class Hearing:
 
     def _answered(self, kind: int, payload: bytes, now_us: int) -> None:
         """Take the answer to an order."""
-        taken = self.answers.take(kind, payload, self.labels, now_us // 1000)
+        taken = self.answers.take(kind, payload, self.parts, now_us // 1000)
         if taken is None or taken.asked is None:
             return
         name, values = taken.asked.name, taken.asked.values
@@ -137,7 +137,7 @@ class Hearing:
         stranger = handshake.identity is None
         handshake.take(kind, payload, now_us // 1000)
         if handshake.profile:
-            self.profile, self.labels = handshake.profile, handshake.profile.labels
+            self.profile, self.parts = handshake.profile, handshake.profile.parts
         if stranger and handshake.identity is not None:
             self.keeper.byte_ns = handshake.identity.byte_ns
             self.keeper.introduced(handshake.begun_ms, handshake.identity.uptime_ms, now_us, len(payload))

@@ -22,6 +22,7 @@ from mcap.writer import Writer
 
 from host.errors import BadRequest
 from host.outages import LinkNews
+from host.profile import Parts
 from host.recording import Scene
 from host.records import Event, Record, Sample, Telemetry, row_of
 
@@ -30,7 +31,7 @@ CHUNK_MS = 1000
 NS_PER_MS = 1_000_000
 
 NUMBER, TEXT, MAYBE = {"type": "number"}, {"type": "string"}, {"type": ["number", "null"]}
-BY_COIL = {"type": "object", "additionalProperties": NUMBER}
+BY_LABEL = {"type": "object", "additionalProperties": NUMBER}
 COORDINATES = {"type": "array", "items": {"type": "array", "items": NUMBER}}
 TOPICS: dict[str, dict[str, Any]] = {
     "bytes": {
@@ -42,11 +43,15 @@ TOPICS: dict[str, dict[str, Any]] = {
     "telemetry": {
         **dict.fromkeys(("host_ms", "now_ms", "step", "supply_mv", "current_ma", "board_degc"), NUMBER),
         "state": TEXT,
-        "duty_permille": BY_COIL,
-        "temperature_degc": BY_COIL,
+        "duty_permille": BY_LABEL,
+        "temperature_degc": BY_LABEL,
         "roll_deg": MAYBE,
         "pitch_deg": MAYBE,
         "down": {"type": ["string", "null"]},
+        "joint_deg": BY_LABEL,
+        "commanded_deg": {"type": "object", "additionalProperties": MAYBE},
+        "joint_ma": BY_LABEL,
+        "object_deg": MAYBE,
     },
     "samples": {**dict.fromkeys(("host_ms", "now_ms", "slot"), NUMBER), "values": {"type": "object"}},
     "events": {
@@ -84,11 +89,11 @@ TOPICS: dict[str, dict[str, Any]] = {
 class LogWriter:
     """Writes one log; BadRequest, once, when the file cannot be made or the disk is full.
 
-    `labels` name the coils once the robot is known.
+    `parts` name its coils and joints once the robot is known.
     """
 
     def __init__(self, path: str | Path) -> None:
-        self.labels: tuple[str, ...] = ()
+        self.parts = Parts()
         self._path = path
         self._broken = False
         with self._writing():
@@ -113,7 +118,7 @@ class LogWriter:
 
     def record(self, record: Record) -> None:
         """Keep what the robot told; a fault closes the chunk."""
-        row = row_of(record, self.labels)
+        row = row_of(record, self.parts)
         if isinstance(record, Telemetry):
             self._add("telemetry", record.host_ms, row)
         elif isinstance(record, Sample):

@@ -23,7 +23,7 @@ from zstandard import ZstdError
 
 from host.errors import BadRequest
 from host.recording import Recording
-from host.records import Event, Telemetry
+from host.records import PER_COIL, PER_JOINT, Event, Telemetry
 
 Row = dict[str, Any]
 RECORD_MAX = 1 << 28  # bytes; a greater length is damage
@@ -38,14 +38,15 @@ class Log:
     attachments: dict[str, bytes] = field(default_factory=dict)
     complete: bool = False
 
-    def labels(self) -> tuple[str, ...]:
-        """Return the coils that the telemetry names."""
+    def labels(self, name: str = "duty_permille") -> tuple[str, ...]:
+        """Return the coils, or whatever a value of that name is told of, that the telemetry names."""
         rows = self.rows.get("telemetry", ())
-        return tuple(rows[0]["duty_permille"]) if rows else ()
+        return tuple(rows[0].get(name, ())) if rows else ()
 
     def recording(self) -> Recording:
         """Return the run as pictures look back on it."""
-        recording = Recording(self.labels(), title=self.title(), scenes=list(self.rows.get("scenes", ())))
+        recording = Recording(self.labels(), title=self.title(), joints=self.labels("joint_deg"))
+        recording.scenes += self.rows.get("scenes", ())
         recording.telemetry += [_telemetry(row) for row in self.rows.get("telemetry", ())]
         recording.events += [Event(**row) for row in self.rows.get("events", ())]
         return recording
@@ -112,8 +113,8 @@ def _read(file: IO[bytes], log: Log) -> bool:
 
 
 def _telemetry(row: Row) -> Telemetry:
-    by_coil = {name: tuple(row[name].values()) for name in ("duty_permille", "temperature_degc")}
-    return Telemetry(**{**row, **by_coil})
+    by_label = {name: tuple(row.get(name, {}).values()) for name in (*PER_COIL, *PER_JOINT)}
+    return Telemetry(**{**row, **by_label})
 
 
 def _flat(row: Row, before: str = "") -> Iterator[tuple[str, Any]]:

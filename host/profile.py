@@ -43,6 +43,10 @@ class Parts(NamedTuple):
     joints: tuple[str, ...] = ()
     cameras: int = 0
 
+    def kind(self, label: str | None) -> str:
+        """Return what is behind a label: `coil` or `joint`."""
+        return "joint" if label in self.joints else "coil"
+
 
 @dataclass(frozen=True)
 class Profile:

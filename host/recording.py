@@ -4,7 +4,7 @@ A scene is what the address's observer (the bench; a motion-capture system) says
 nodes and coils in the plane's own axes, of two coordinates or three, mm and degrees Celsius), `observe()` under
 "observed" (travel_mm, ...) and the host's clock at that time. A real robot has no observer and its recording no scenes.
 
-    recording = Recording(robot.profile.labels, "circular-crawl.gait on sim:circular")
+    recording = Recording(robot.profile.coil_labels, "circular-crawl.gait on sim:circular")
     recording.note(record)                    # each Telemetry and Event
     recording.look(link.observer, host_ms)    # beside each telemetry, where there is an observer
 """
@@ -22,13 +22,14 @@ Scene = dict[str, Any]
 
 @dataclass(slots=True)
 class Recording:
-    """What was seen of one run; `labels` are the coils in the order of the telemetry."""
+    """What was seen of one run; `labels` are the coils and `joints` the joints in the order of the telemetry."""
 
     labels: tuple[str, ...]
     title: str = ""
     telemetry: list[Telemetry] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
     scenes: list[Scene] = field(default_factory=list)
+    joints: tuple[str, ...] = ()
 
     def note(self, record: object) -> None:
         """Keep a record that pictures need; others are passed over."""

@@ -9,12 +9,13 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from host.profile import Parts
 from protocol import messages, program, variables
 
 
 @dataclass(frozen=True, slots=True)
 class Telemetry:
-    """The robot at one instant; `duty_permille` and `temperature_degc` are in the order of its channels."""
+    """The robot at one instant; what there is for each coil or each joint is in the order of its channels."""
 
     host_ms: int
     now_ms: int
@@ -28,11 +29,18 @@ class Telemetry:
     roll_deg: float | None = None  # None, as the two below: the robot does not know how it lies
     pitch_deg: float | None = None
     down: str | None = None  # the coil whose direction is nearest to down
+    joint_deg: tuple[float, ...] = ()
+    commanded_deg: tuple[float | None, ...] = ()  # None: the joint is limp
+    joint_ma: tuple[int, ...] = ()
+    object_deg: float | None = None  # None: there is no camera, or it does not see the object
 
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """Something that happened on the robot; `value` is in the unit of the code's row, `coil` None when about none."""
+    """Something that happened on the robot; `value` is in the unit of the code's row.
+
+    `coil` is the label of the coil or joint that it is about, None when about none.
+    """
 
     host_ms: int
     now_ms: int
@@ -45,7 +53,7 @@ class Event:
 
 @dataclass(frozen=True, slots=True)
 class Stopped:
-    """The robot's answer to a stop: `coils` were on when it arrived and are off now."""
+    """The robot's answer to a stop: `coils`, by label, joints among them, were driven when it came and are off now."""
 
     host_ms: int
     now_ms: int
@@ -56,7 +64,7 @@ class Stopped:
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """The robot's answer to a request for its status."""
+    """The robot's answer to a request for its status; `coils` are the labels of all that is driven, also of joints."""
 
     host_ms: int
     state: str
@@ -79,7 +87,7 @@ class Status:
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """Other variables than the usual ones, by name, as protocol/variables.py has them; those per coil by label."""
+    """Other variables than the usual ones, by name, as protocol/variables.py has them; several of a kind by label."""
 
     host_ms: int
     now_ms: int
@@ -87,35 +95,45 @@ class Sample:
     values: dict[str, Any]
 
 
+PER_COIL = ("duty_permille", "temperature_degc")  # of telemetry
+PER_JOINT = ("joint_deg", "commanded_deg", "joint_ma")
+USUAL_NAMES = tuple(variables.VARIABLES[number].name for number in variables.USUAL)
+
 Record = Telemetry | Sample | Event | Stopped
 
 
-def telemetry_of(values: list[Any], labels: tuple[str, ...], host_ms: int, now_ms: int) -> Telemetry:
+def telemetry_of(values: list[Any], parts: Parts, host_ms: int, now_ms: int) -> Telemetry:
     """Return the record of the usual variables."""
-    state, step, supply_mv, current_ma, board_decidegc, roll_decideg, pitch_decideg, down, duties, decidegcs = values
+    told = dict(zip(USUAL_NAMES, values, strict=True))
     return Telemetry(
         host_ms,
         now_ms,
-        state_name(state),
-        step,
-        supply_mv,
-        current_ma,
-        board_decidegc / 10,
-        duties,
-        tuple([decidegc / 10 for decidegc in decidegcs]),
-        **_attitude(roll_decideg, pitch_decideg, down, labels),
+        state_name(told["state"]),
+        told["step"],
+        told["supply_mv"],
+        told["current_ma"],
+        told["board_decidegc"] / 10,
+        told["duty_permille"],
+        tuple([decidegc / 10 for decidegc in told["coil_decidegc"]]),
+        **_attitude(told["roll_decideg"], told["pitch_decideg"], told["down"], parts.channels),
+        joint_deg=tuple([centideg / 100 for centideg in told["joint_centideg"]]),
+        commanded_deg=tuple([_angle_deg(centideg) for centideg in told["commanded_centideg"]]),
+        joint_ma=told["joint_ma"],
+        object_deg=_angle_deg(*told["object_centideg"]),
     )
 
 
 def sample_of(
-    slot: int, numbers: tuple[int, ...], values: list[Any], labels: tuple[str, ...], host_ms: int, now_ms: int
+    slot: int, numbers: tuple[int, ...], values: list[Any], parts: Parts, host_ms: int, now_ms: int
 ) -> Sample:
-    """Return the record of these variables; a state is told by its name."""
+    """Return the record of these variables; a state is told by its name, what only a camera tells by None without."""
     named: dict[str, Any] = {}
     for number, value in zip(numbers, values, strict=True):
         name, letter = variables.VARIABLES[number]
-        if letter.endswith("*"):
-            named[name] = dict(zip(labels, value, strict=True))
+        if letter.endswith(("*", "+")):
+            named[name] = dict(zip(parts.coils if letter.endswith("*") else parts.joints, value, strict=True))
+        elif letter.endswith("@"):
+            named[name] = value[0] if value else None
         else:
             named[name] = state_name(value) if name == "state" else value
     return Sample(host_ms, now_ms, slot, named)
@@ -163,6 +181,11 @@ def _attitude(roll_decideg: int, pitch_decideg: int, down: int, labels: tuple[st
     return {"roll_deg": roll_decideg / 10, "pitch_deg": pitch_decideg / 10, "down": coil_name(down, labels)}
 
 
+def _angle_deg(centideg: int = variables.UNKNOWN_ANGLE) -> float | None:
+    """Return an angle, or None where the robot says that there is none, or nothing."""
+    return None if centideg == variables.UNKNOWN_ANGLE else centideg / 100
+
+
 def state_name(state: int) -> str:
     """Return the state's name, or its number when this version has no name for it."""
     return messages.STATES[state] if state < len(messages.STATES) else f"state {state}"
@@ -184,10 +207,18 @@ def as_json(record: Any) -> dict[str, Any]:
     return asdict(record)
 
 
-def row_of(record: Record, labels: tuple[str, ...]) -> dict[str, Any]:
-    """Return the record's fields by name, with what there is for each coil by its label."""
+def row_of(record: Record, parts: Parts) -> dict[str, Any]:
+    """Return the record's fields by name, with what there is for each coil or joint by its label.
+
+    What the robot has none of is left out.
+    """
     row = as_json(record)
-    if isinstance(record, Telemetry):
-        for name in ("duty_permille", "temperature_degc"):
-            row[name] = dict(zip(labels, row[name], strict=False))
-    return row
+    if not isinstance(record, Telemetry):
+        return row
+    for names, labels in ((PER_COIL, parts.coils), (PER_JOINT, parts.joints)):
+        for name in names:
+            values = row.pop(name)
+            if labels:
+                row[name] = dict(zip(labels, values, strict=False))
+    seen = row.pop("object_deg")
+    return {**row, "object_deg": seen} if parts.cameras else row

@@ -13,6 +13,7 @@ from host.attention import Attention
 from host.errors import LinkLost, RobotFault, ScriptFailed, SoftrigError
 from host.log import LogWriter
 from host.outages import LinkNews
+from host.profile import Parts
 from host.recording import Recording, Scene
 from host.records import Event, Record, Telemetry
 from host.robot import Robot
@@ -41,11 +42,11 @@ class Keeper:
         if hasattr(observer, "watch"):
             observer.watch(self.glance)
 
-    def name_coils(self, labels: tuple[str, ...]) -> None:
-        """Take the labels of the coils, once the robot has told them."""
-        self.recording.labels = labels
+    def know(self, parts: Parts) -> None:
+        """Take the labels of the robot's coils and joints, once it has told them."""
+        self.recording.labels, self.recording.joints = parts.coils, parts.joints
         if self._log:
-            self._log.labels = labels
+            self._log.parts = parts
 
     def line(self, direction: str, data: bytes, host_ms: int, robot_ms: int | None) -> None:
         """Keep bytes that went "out" or came "in"."""

@@ -4,7 +4,7 @@ The robot numbers the records of a slot, those included that found no room on th
 values, so that one that was on its way when a subscription changed is still read as what it is.
 
     selections.ask(seq, Selection(slot=0, numbers=variables.USUAL, period_ms=10, on_change=False))
-    record = selections.take(payload, labels, host_ms)
+    record = selections.take(payload, parts, host_ms)
     selections.missed()
 """
 
@@ -16,6 +16,7 @@ from difflib import get_close_matches
 from typing import Any, NamedTuple
 
 from host.errors import BadRequest
+from host.profile import Parts
 from host.records import Sample, Telemetry, sample_of, telemetry_of
 from host.robotclock import since
 from protocol import messages, variables
@@ -79,7 +80,7 @@ class Selections:
         if len(slot.forms) > FORMS_KEPT:
             del slot.forms[next(iter(slot.forms))]
 
-    def take(self, payload: bytes, labels: tuple[str, ...], host_ms: int) -> Telemetry | Sample | None:
+    def take(self, payload: bytes, parts: Parts, host_ms: int) -> Telemetry | Sample | None:
         """Return the record of that payload, None when it came before or is of nobody's asking; ValueError: damaged."""
         row = messages.TELEMETRY.unpack(payload)
         slot = self._slots[row.slot]
@@ -87,12 +88,12 @@ class Selections:
         if asked is None and row.form != USUAL_FORM:
             return None
         numbers = asked.numbers if asked else variables.USUAL
-        values = variables.unpack(numbers, variables.veiled(row.values), len(labels))
+        values = variables.unpack(numbers, variables.veiled(row.values), *_counts(parts))
         if not slot.counted(row.count, row.now_ms, asked.period_ms if asked and not asked.on_change else 0):
             return None
         if numbers == variables.USUAL:
-            return telemetry_of(values, labels, host_ms, row.now_ms)
-        return sample_of(row.slot, numbers, values, labels, host_ms, row.now_ms)
+            return telemetry_of(values, parts, host_ms, row.now_ms)
+        return sample_of(row.slot, numbers, values, parts, host_ms, row.now_ms)
 
     def missed(self) -> dict[int, int]:
         """Return how many records did not come, by slot."""
@@ -129,6 +130,11 @@ class _Slot:
         self.missed += gap
         self.due, self._now_ms = (count + 1) & 255, now_ms
         return True
+
+
+def _counts(parts: Parts) -> tuple[int, int, int]:
+    """Return of how many coils, joints and cameras a record tells."""
+    return len(parts.coils), len(parts.joints), parts.cameras
 
 
 def _nearest(name: str) -> str:

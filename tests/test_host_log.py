@@ -14,9 +14,11 @@ from mcap.reader import make_reader
 from host.errors import BadRequest
 from host.log import TOPICS, LogWriter
 from host.logbook import read_log
-from host.records import Event, Stopped, Telemetry
+from host.profile import Parts
+from host.records import PER_JOINT, Event, Stopped, Telemetry
 
 LABELS = ("A", "B")
+PARTS = Parts(LABELS, LABELS)
 
 
 def telemetry(now_ms: int) -> Telemetry:
@@ -29,7 +31,7 @@ def event(name: str, code: int = 0) -> Event:
 
 def write(path, rows: int = 200):
     with LogWriter(path) as log:
-        log.labels = LABELS
+        log.parts = PARTS
         log.attach("versions.json", json.dumps({"script": "a.gait", "address": "sim:circular"}).encode())
         log.line("out", b"\x01\x00", 5, None)
         for i in range(rows):
@@ -62,7 +64,8 @@ def test_other_programs_can_read_it_with_names_and_schemas(path):
         schema, channel, message = next(iter(make_reader(file).iter_messages(topics=["telemetry"])))
 
     assert schema.encoding == "jsonschema"
-    assert set(json.loads(schema.data)["properties"]) == set(json.loads(message.data)) == set(TOPICS["telemetry"])
+    assert set(json.loads(schema.data)["properties"]) == set(TOPICS["telemetry"])
+    assert set(json.loads(message.data)) == set(TOPICS["telemetry"]) - {*PER_JOINT, "object_deg"}
     assert channel.message_encoding == "json"
     assert message.log_time == 7_000_000
 
@@ -80,7 +83,7 @@ def test_a_log_that_was_cut_off_is_read_as_far_as_it_goes(path, share):
 
 def test_a_log_without_its_end_has_lost_no_row_of_a_closed_chunk(tmp_path):
     log = LogWriter(tmp_path / "open.mcap")
-    log.labels = LABELS
+    log.parts = PARTS
     for i in range(200):
         log.record(telemetry(50 * i))
 
@@ -93,7 +96,7 @@ def test_a_log_without_its_end_has_lost_no_row_of_a_closed_chunk(tmp_path):
 @pytest.mark.parametrize("last", [event("tripped", 105), Stopped(900, 893, "tripped", 101, ("A",))])
 def test_a_fault_is_on_the_disk_at_once(tmp_path, last):
     log = LogWriter(tmp_path / "open.mcap")
-    log.labels = LABELS
+    log.parts = PARTS
     log.record(telemetry(0))
     log.record(last)
 
@@ -107,8 +110,8 @@ def test_a_fault_is_on_the_disk_at_once(tmp_path, last):
 def test_a_writer_that_is_killed_leaves_a_readable_log(tmp_path):
     script = (
         "import os, signal, sys\n"
-        "from tests.test_host_log import LABELS, LogWriter, telemetry\n"
-        "log = LogWriter(sys.argv[1]); log.labels = LABELS\n"
+        "from tests.test_host_log import PARTS, LogWriter, telemetry\n"
+        "log = LogWriter(sys.argv[1]); log.parts = PARTS\n"
         "for i in range(2000): log.record(telemetry(50 * i))\n"
         "os.kill(os.getpid(), signal.SIGKILL)\n"
     )

@@ -5,11 +5,12 @@ import struct
 
 import pytest
 
+from host.profile import Parts
 from host.records import Sample, Telemetry
 from host.selections import Selection, Selections, selection_of
 from protocol import messages, variables
 
-LABELS = ("A", "B", "C")
+ABC = Parts(("A", "B", "C"), ("A", "B", "C"))
 SUPPLY = (variables.number("supply_mv"),)
 
 
@@ -33,7 +34,7 @@ def asked(period_ms=10, on_change=False, seq=0):
 
 def taken(selections, *payloads):
     """Return the robot's times of the records that were taken."""
-    told = [selections.take(payload, LABELS, 0) for payload in payloads]
+    told = [selections.take(payload, ABC, 0) for payload in payloads]
     return [each.now_ms for each in told if each]
 
 
@@ -43,9 +44,7 @@ def test_a_record_of_named_variables_is_a_sample():
     selections.ask(7, Selection(2, numbers, 10, False))
     values = variables.veiled(struct.pack("<BI3h", 3, 5, 250, -10, 1203))
 
-    told = selections.take(
-        messages.TELEMETRY.pack(slot=2, form=8, count=0, now_ms=70, values=values), LABELS, host_ms=80
-    )
+    told = selections.take(messages.TELEMETRY.pack(slot=2, form=8, count=0, now_ms=70, values=values), ABC, host_ms=80)
 
     named = {"state": "running", "coils_on": 5, "coil_decidegc": {"A": 250, "B": -10, "C": 1203}}
     assert told == Sample(80, 70, 2, named)
@@ -55,7 +54,7 @@ def test_a_record_of_the_usual_variables_is_telemetry_even_to_who_did_not_ask():
     values = variables.veiled(struct.pack("<BHHHhhhB3H3h", 2, 7, 2000, 15, 231, 0, 0, 255, 0, 600, 0, 250, 991, 250))
     payload = messages.TELEMETRY.pack(slot=1, form=0, count=9, now_ms=70, values=values)
 
-    told = Selections().take(payload, LABELS, host_ms=80)
+    told = Selections().take(payload, ABC, host_ms=80)
 
     assert told == Telemetry(80, 70, "armed", 7, 2000, 15, 23.1, (0, 600, 0), (25.0, 99.1, 25.0))
 
@@ -64,23 +63,23 @@ def test_what_another_session_was_told_is_not_missed_by_this_one():
     """A robot goes on telling the session of a host that has gone, until the next one asks."""
     selections = Selections()
 
-    before = [selections.take(usual(count, 1000 + 10 * count), LABELS, 0) for count in (80, 81)]
+    before = [selections.take(usual(count, 1000 + 10 * count), ABC, 0) for count in (80, 81)]
     selections.ask(0, Selection(0, variables.USUAL, 10, False), robot_ms=1825)
-    late = selections.take(usual(82, 1820), LABELS, 0)
-    own = [selections.take(usual(count, 1830 + 10 * count), LABELS, 0) for count in (0, 1, 3)]
+    late = selections.take(usual(82, 1820), ABC, 0)
+    own = [selections.take(usual(count, 1830 + 10 * count), ABC, 0) for count in (0, 1, 3)]
 
     assert None not in [*before, late, *own]
     assert selections.missed() == {0: 1}
 
 
 def test_a_record_that_is_of_nobodys_asking_is_passed_over():
-    assert asked().take(record(0, 5, form=99), LABELS, 0) is None
+    assert asked().take(record(0, 5, form=99), ABC, 0) is None
 
 
 def test_a_record_whose_values_do_not_fit_is_damaged():
     selections = asked()
     with pytest.raises(ValueError, match="3 bytes of values, expected 2"):
-        selections.take(messages.TELEMETRY.pack(slot=0, form=1, count=0, now_ms=5, values=b"abc"), LABELS, 0)
+        selections.take(messages.TELEMETRY.pack(slot=0, form=1, count=0, now_ms=5, values=b"abc"), ABC, 0)
     assert selections.missed() == {0: 0}
 
 
@@ -89,7 +88,7 @@ def test_records_on_their_way_when_the_subscription_changes_are_read_as_what_the
     selections.ask(1, Selection(0, (variables.number("state"),), 10, False))
     state = messages.TELEMETRY.pack(slot=0, form=2, count=1, now_ms=20, values=variables.veiled(b"\x04"))
 
-    old, new = selections.take(record(0, 10), LABELS, 0), selections.take(state, LABELS, 0)
+    old, new = selections.take(record(0, 10), ABC, 0), selections.take(state, ABC, 0)
 
     assert (old.values, new.values) == ({"supply_mv": 2000}, {"state": "tripped"})
     assert selections.missed() == {0: 0}

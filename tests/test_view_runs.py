@@ -29,7 +29,7 @@ def recorded(gait: str, address: str = "sim:circular") -> Recording:
     keeper = Keeper(observer=link.observer)
     with Robot(link, keeper) as robot:
         robot.connect()
-        keeper.name_coils(robot.profile.labels)
+        keeper.know(robot.profile.parts)
         run(robot, compile_script(load(str(GAITS / gait)), robot.profile, ()).program, lambda stage, done: None)
     return keeper.recording
 

@@ -40,7 +40,7 @@ def command(
         keeper = Keeper(log)
         with Robot(open_link(robot), keeper, given_key()) as face:
             taken = face.attach(session)
-            keeper.name_coils(face.profile.labels)
+            keeper.know(face.profile.parts)
             note(f"session {face.talk.session.number} has taken over from session {taken}")
             ending = _stopped(face) if stop else _watched(face, IfLost(if_lost == "stop", patience))
             fields = {"result": ending.result, "address": robot, "attached_to": taken, **_fields(face, keeper)}

@@ -64,7 +64,7 @@ def recorded(figure: Figure, robot: str | None) -> Recording:
     keeper = Keeper(observer=link.observer)
     with Robot(link, keeper, given_key()) as face:
         face.connect()
-        keeper.name_coils(face.profile.labels)
+        keeper.know(face.profile.parts)
         keeper.recording.title = f"{figure.script} on {address}"
         compiled, _ = proven(tree, face.profile)
         ending = run(face, compiled.program, lambda stage, done: None)

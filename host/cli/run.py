@@ -59,7 +59,7 @@ def command(
         keeper = Keeper(log, link.observer if log_path or plot_path else None)
         with Robot(link, keeper, key) as face:
             face.connect()
-            keeper.name_coils(face.profile.labels)
+            keeper.know(face.profile.parts)
             keeper.recording.title = f"{Path(script).name} on {address}"
             compiled, worst = proven(tree, face.profile, params)
             _attach(log, compiled, face, address)

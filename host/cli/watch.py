@@ -14,6 +14,7 @@ from host.cli.connection import connected
 from host.cli.options import json_option, robot_option, time_ms
 from host.cli.output import json_line, note, printable
 from host.errors import BadRequest
+from host.profile import Parts
 from host.records import Record, Sample, Telemetry, row_of
 from host.robot import Robot
 from host.selections import numbers_of
@@ -75,29 +76,29 @@ def command(
 
 def _watched(face: Robot, time_ms: int, as_lines: bool) -> int:
     """Show what comes for that long, or until Ctrl-C, and return how many records of telemetry did."""
-    count, labels = 0, face.profile.labels
-    with suppress(KeyboardInterrupt), _lines(labels) if as_lines else _table(labels) as show:
+    count, parts = 0, face.profile.parts
+    with suppress(KeyboardInterrupt), _lines(parts) if as_lines else _table(parts) as show:
         for record in face.listen(time_ms):
             count += isinstance(record, (Telemetry, Sample))
             show(record)
     return count
 
 
-def fields_of(record: Record, labels: tuple[str, ...]) -> dict[str, Any]:
+def fields_of(record: Record, parts: Parts) -> dict[str, Any]:
     """Return a record's fields, variables among them by their names."""
-    row = row_of(record, labels)
+    row = row_of(record, parts)
     values = row.pop("values", {})
     return {**row, **values}
 
 
 @contextmanager
-def _lines(labels: tuple[str, ...]) -> Iterator[Show]:
+def _lines(parts: Parts) -> Iterator[Show]:
     """Print each record on a line of its own."""
-    yield lambda record: click.echo(json_line(fields_of(record, labels)))
+    yield lambda record: click.echo(json_line(fields_of(record, parts)))
 
 
 @contextmanager
-def _table(labels: tuple[str, ...]) -> Iterator[Show]:
+def _table(parts: Parts) -> Iterator[Show]:
     """Keep one table up to date; events pass above it."""
     from rich.live import Live  # noqa: PLC0415
     from rich.table import Table  # noqa: PLC0415
@@ -108,11 +109,11 @@ def _table(labels: tuple[str, ...]) -> Iterator[Show]:
         def show(record: Record) -> None:
             nonlocal drawn_ms
             if not isinstance(record, (Telemetry, Sample)):
-                live.console.print(json_line(fields_of(record, labels)), markup=False, highlight=False)
+                live.console.print(json_line(fields_of(record, parts)), markup=False, highlight=False)
             elif record.host_ms - drawn_ms >= DRAWN_EVERY_MS:
                 drawn_ms = record.host_ms
                 table = Table.grid("", "", padding=(0, 2))
-                for name, value in fields_of(record, labels).items():
+                for name, value in fields_of(record, parts).items():
                     table.add_row(name, printable(_told(value)))
                 live.update(table, refresh=True)
 
