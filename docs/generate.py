@@ -8,6 +8,7 @@ import json
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -22,8 +23,11 @@ ROBOTS = ROOT / "firmware" / "robots"
 MADE = "<!-- Made by docs/generate.py: change the table it comes from and run `make docs`. -->\n\n"
 UNITS = {
     "_uj_per_k": "µJ/K", "_uw_per_k": "µW/K", "_mv": "mV", "_ma": "mA", "_mj": "mJ", "_uj": "µJ", "_mohm": "mΩ",
-    "_ms": "ms", "_degc": "°C", "_permille": "‰", "bytes": "bytes",
+    "_ms": "ms", "_degc": "°C", "_permille": "‰", "bytes": "bytes", "_centideg": "0.01°", "_hz": "Hz", "_us": "µs",
+    "_centideg_per_s": "0.01°/s", "_permille_per_s": "‰/s", "_counts": "counts", "ua_per_count": "µA",
 }  # fmt: skip
+SECTIONS = ("coil", "servo", "camera", "orient", "supply", "session", "program")  # of a profile
+SENSORS = {"Attitude sensor": "imu", "Camera": "camera"}
 WIDTH = 100  # of the help texts
 
 
@@ -102,20 +106,25 @@ def limits_page() -> str:
     ]
     for file in sorted(ROBOTS.glob("*.json")):
         profile = json.loads(file.read_text(encoding="utf-8"))
-        channels = [
-            (str(i), c["label"], c["kind"], f"0x{c['chip']:02X}", str(c["output"]))
-            for i, c in enumerate(profile["channels"])
-        ]
+        channels = [(str(i), row["label"], row["kind"], wired(row)) for i, row in enumerate(profile["channels"])]
         groups = [(name, labels) for name, labels in profile["groups"]]
-        sensor = f" Attitude sensor at 0x{profile['imu']['address']:02X}." if "imu" in profile else ""
+        sensors = [(name, profile[key]["address"]) for name, key in SENSORS.items() if key in profile]
+        sensor = "".join(f" {name} at 0x{address:02X}." for name, address in sensors)
         parts += [f"## {profile['robot']}\nSupply {profile['supply_mv']} mV.{sensor}\n"]
-        parts += [table(("bit", "label", "kind", "chip", "output"), channels), table(("group", "labels"), groups)]
-        sections = ("coil", "supply", "session", "program")
+        parts += [table(("bit", "label", "kind", "driven by"), channels), table(("group", "labels"), groups)]
+        sections = [part for part in SECTIONS if part in profile]
         limits = [
             (f"{part}.{key}", str(value), unit_of(key)) for part in sections for key, value in profile[part].items()
         ]
         parts.append(table(("limit", "value", "unit"), limits))
     return "\n".join(parts)
+
+
+def wired(row: dict[str, Any]) -> str:
+    """Return what drives a channel of a profile."""
+    if row["kind"] == "servo":
+        return f"GP{row['pin']}; current on AIN{row['current']}, angle on AIN{row['angle']}"
+    return f"0x{row['chip']:02X}, output {row['output']}"
 
 
 def unit_of(key: str) -> str:

@@ -1,4 +1,4 @@
-"""What a joint's servo says of itself, through a converter: its angle by its potentiometer, its current by an amplifier.
+"""What a joint's servo says of itself, through a converter: its angle by its potentiometer, and its current.
 
 A joint that takes its stall current for long cannot turn as it is told; a potentiometer that reads what none of its
 positions gives is broken or cut off.
