@@ -16,6 +16,7 @@ from protocol.link import Link
 ROOT = Path(__file__).parents[1]
 PROFILE = ROOT / "firmware" / "robots" / "circular.json"
 BALL = PROFILE.with_name("sphere-a.json")  # a robot with an attitude sensor
+FINGERS = PROFILE.with_name("fingers.json")  # a robot with joints and a camera, and no coils
 SESSION = 77
 
 
@@ -137,6 +138,57 @@ class Imu:
             raise OSError(5, "EIO")
 
 
+class Servo:
+    """The pulses of one servo, None: there are none."""
+
+    def __init__(self) -> None:
+        self.width_ns = None
+        self.writes = 0
+
+    def pulse(self, width_ns: int) -> None:
+        self.width_ns = width_ns
+        self.writes += 1
+
+    def off(self) -> None:
+        self.width_ns = None
+
+
+class Converter:
+    """What a converter reads: the angle of a joint that follows its pulses at once, and its current."""
+
+    def __init__(self, servos) -> None:
+        self.ma = [100, 100]
+        self.stuck_counts = {}  # of an input, whatever the joint does
+        self.rest_centideg = [0, 0]  # where a limp joint stands
+        self._servos = servos
+
+    def counts(self, channel: int) -> int:
+        if channel in self.stuck_counts:
+            return self.stuck_counts[channel]
+        if channel < 2:
+            return self.ma[channel] * 1000 // 1611 + 1
+        servo = list(self._servos.values())[channel - 2]
+        if servo.width_ns is not None:
+            self.rest_centideg[channel - 2] = round((servo.width_ns - 1_500_000) * 9 / 1000)
+        return 410 + round((self.rest_centideg[channel - 2] + 9000) * 3276 / 18000)
+
+
+class Watcher:
+    """A camera with a frame every second control step, of an object that lies as a test says."""
+
+    def __init__(self) -> None:
+        self.seen = True
+        self.centideg = 0
+        self.absent = self.frozen = False
+        self.turns = 0
+
+    def read(self) -> bool:
+        if self.absent:
+            raise OSError(5, "EIO")
+        self.turns += 1
+        return self.turns % 2 == 0 and not self.frozen
+
+
 class Flash:
     """Files that are written whole, or not at all."""
 
@@ -178,6 +230,9 @@ class Table:
         self.alerting = False
         self.waited_us = 0
         self.sensor = Imu()
+        self.servos = {}  # by pin
+        self.converter = Converter(self.servos)
+        self.watcher = Watcher()
         self.powered = False
         self.serial = b"the table"
         self.credit_bytes = 960
@@ -219,6 +274,16 @@ class Table:
 
     def imu(self, address: int) -> Imu:
         return self.sensor
+
+    def servo(self, pin: int, hz: int) -> Servo:
+        self.servos[pin] = Servo()
+        return self.servos[pin]
+
+    def adc(self) -> Converter:
+        return self.converter
+
+    def camera(self, address: int) -> Watcher:
+        return self.watcher
 
     def power(self, on: bool) -> None:
         self.powered = on
@@ -289,6 +354,12 @@ class Rig:
     def fire(self, coils: int, duty_permille: int = 500, hold_ms: int = 1000):
         """Fire and return the answers."""
         return self.say(messages.FIRE, coils=coils, duty_permille=duty_permille, hold_ms=hold_ms)
+
+    def move(self, joints: int, target_centideg: int, over_ms: int = 100, hold_ms: int = 5000):
+        """Move joints and return the answers."""
+        return self.say(
+            messages.MOVE, joints=joints, target_centideg=target_centideg, over_ms=over_ms, hold_ms=hold_ms
+        )  # fmt: skip
 
     def upload(self, code: bytes, header: bytes):
         """Send a program; return all answers."""
