@@ -1,0 +1,199 @@
+r"""Two soft fingers hold an object without friction: where it rests, by Newton's method on the energy.
+
+Without friction only p = n . (x, y), the place across the faces, and psi enter the energy U = U_r + U_l of the tips,
+so the place *along* the faces is undetermined: the Hessian over (x, y, psi) has an eigenvalue that is exactly zero. It
+is reported as undetermined, by the convention that the object's middle is level with the middle of the two tips. With
+the depths and tilts of `geometry` (G2), sigma_i = t . C_i and s = +1, -1,
+
+.. math::  U_p = N_r - N_l, \quad U_\psi = -N_r \sigma_r + N_l \sigma_l + M_r + M_l                               (G3)
+
+and the Hessian follows in closed form. The start and the safety of the iteration come from a reduction that is
+derived here. For a given psi the first of (G3) is solved by d_i = D g_i / (g_r + g_l) with g = cos(theta) for the nail
+tip and 1 for the radial one, D = 2 a + w - R cos(psi - beta), R and beta length and direction of the line between the
+tips' centres. What is left has the slope
+
+.. math::  \frac{d \ln U}{d \psi} = \frac{3 R \sin(\psi - \beta)}{D} + 2 b \tan(\psi - u), \quad
+           u = \tfrac12 (q_r + q_l)                                                                               (G4)
+
+of opposite signs at beta and at u: the object comes to rest between the line of the centres, which would turn it
+against the fingers, and the fingers' own direction, to which the nail effect (b = 1) pulls; a radial tip (b = 0) lets
+it follow the line of the centres. Newton's steps are kept in that bracket, so they cannot fail. For small swings (G4)
+is the gain law, free of E, with d the depth of the grip:
+
+.. math::  \frac{d\psi}{dq} = -\frac{d + 3 e}{3 a + 1.5 w - d}                                                    (G5)
+
+Source: Hirai, section 3.3. Gravity does not enter: nothing could carry the object along the faces. Checked in
+tests/test_physics_hand_grasp.py.
+"""
+
+from math import atan2, cos, hypot, pi, sin, tan
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hil_sim.physics.compiled import Array, kernel, lean, prepare
+from hil_sim.physics.hand.fingertip import FINGERS, HandError, NoEquilibrium, deepest, refusal, springs
+from hil_sim.physics.hand.geometry import centre, meet, sweep
+from hil_sim.physics.hand.numbers import Fingers, HandNumbers, fingers_of
+
+HELD, LOST_R, LOST_L, DEEP_R, DEEP_L, RESTLESS = range(6)
+PRECISION = 1e-9  # [rad] and of the radius: the step after which Newton's next would be below rounding
+ITERATIONS_MAX = 60
+
+
+class Grasp(NamedTuple):
+    """Where the object rests: arrays over the poses, those of the fingers (poses, 2) with R first."""
+
+    x: Array  # [m]
+    y: Array  # by convention: along the faces the place is undetermined [m]
+    psi: Array  # [rad]
+    d: Array  # [m]
+    theta: Array  # [rad]
+    N: Array  # [N]
+    M: Array  # [N m]
+    torque: Array  # that the object exerts on each joint [N m]
+    U: Array  # [J]
+    K_psi: Array  # rotational stiffness of the grip, the object free to shift [N m/rad]
+    iterations: Array  # of Newton's method [1]
+    along: str = "undetermined"
+
+
+def grasp(numbers: HandNumbers, q_r: Any, q_l: Any) -> Grasp:
+    r"""Return where the object rests for each pose of the joints, without friction.
+
+    Parameters
+    ----------
+    numbers : HandNumbers
+        Numbers of the hand; its contact and motion do not matter here [SI]
+    q_r : array_like (n,)
+        Angle of the right joint [rad]
+    q_l : array_like (n,)
+        Angle of the left joint [rad]
+
+    Returns
+    -------
+    Grasp
+        Pose, depths, forces, energy and stiffness, one row for each pose [SI]
+
+    Raises
+    ------
+    ContactLost
+        The tips are farther apart than the object is wide
+    OutOfRange
+        A tip would be pressed to the edge of its plate
+    HandError
+        A number that cannot be
+    """
+    fingers = fingers_of(numbers._replace(contact="frictionless", motion="quasi-static"))
+    q_r, q_l = np.broadcast_arrays(np.atleast_1d(np.asarray(q_r, float)), np.atleast_1d(np.asarray(q_l, float)))
+    for finger, angles in zip(FINGERS, (q_r, q_l), strict=True):
+        if not np.isfinite(angles).all():
+            raise HandError(f"finger {finger}: q = {angles[~np.isfinite(angles)][0]} rad is not a finite number")
+    prepare(rest_all)
+    found = np.empty((q_r.size, 16))
+    status = rest_all(fingers, np.ascontiguousarray(q_r.ravel()), np.ascontiguousarray(q_l.ravel()), found)
+    wrong = np.flatnonzero(status)
+    if wrong.size:
+        raise failure(int(status[wrong[0]]), found[wrong[0]], fingers.a)
+    pairs = [found[:, i : i + 2] for i in range(3, 13, 2)]
+    return Grasp(found[:, 0], found[:, 1], found[:, 2], *pairs, found[:, 13], found[:, 14], found[:, 15].astype(int))
+
+
+def failure(status: int, found: Array, a: float) -> HandError:
+    """Return the error of a pose that has no rest, from its status and what was found."""
+    if status == RESTLESS:
+        return NoEquilibrium(
+            f"no equilibrium: Newton's method ends at psi = {np.degrees(found[2]):.3f} deg without one"
+        )
+    i = (status - 1) % 2
+    d, theta = float(found[3 + i]), float(found[5 + i])
+    return refusal(f"finger {FINGERS[i]}", d, theta, deepest(a, theta))
+
+
+@kernel
+def rest_all(f: Fingers, q_r: Array, q_l: Array, found: Array) -> Array:
+    """Fill a row of found for each pose, see `rest`, and return the statuses."""
+    status = np.zeros(q_r.size, np.int64)
+    for i in range(q_r.size):
+        status[i] = rest(f, q_r[i], q_l[i], found[i])
+    return status
+
+
+@lean
+def rest(f: Fingers, q_r: float, q_l: float, found: Array) -> int:
+    """Write x, y, psi, d, theta, N, M, torque of both, U, K_psi and iterations; return HELD or what is wrong."""
+    p, psi, K, count = settle(f, q_r, q_l)
+    (rx, ry), (lx, ly) = centre(f, 1.0, q_r), centre(f, -1.0, q_l)
+    along = 0.5 * (cos(psi) * (ry + ly) - sin(psi) * (rx + lx))
+    x, y = p * cos(psi) - along * sin(psi), p * sin(psi) + along * cos(psi)
+    found[0], found[1], found[2], found[13], found[14], found[15] = x, y, psi, 0.0, K, count
+    status = HELD
+    for i in range(2):
+        s, q = (1.0, q_r) if i == 0 else (-1.0, q_l)
+        d, theta, _ = meet(f, s, q, x, y, psi)
+        U, N, M, _, _, _, _, _, _, _ = springs(f.b, f.E, f.k, d, theta, 0.0)
+        dx, dy = sweep(f, s, q)
+        found[3 + i], found[5 + i], found[7 + i], found[9 + i] = d, theta, N, M
+        found[11 + i] = N * s * (cos(psi) * dx + sin(psi) * dy) + M
+        found[13] += U
+        if not d > 0.0:
+            status = LOST_R + i
+        elif not d <= deepest(f.a, theta) and status == HELD:
+            status = DEEP_R + i
+    return RESTLESS if status == HELD and not (K > 0.0 and count < ITERATIONS_MAX) else status
+
+
+@lean
+def settle(f: Fingers, q_r: float, q_l: float) -> tuple[float, float, float, int]:
+    """Return p [m] and psi [rad] of the least energy, K_psi [N m/rad] and the number of Newton's steps."""
+    (rx, ry), (lx, ly) = centre(f, 1.0, q_r), centre(f, -1.0, q_l)
+    R, beta, u = hypot(rx - lx, ry - ly), atan2(ry - ly, rx - lx), 0.5 * (q_r + q_l)
+    D = 2.0 * f.a + f.w - R
+    psi = beta if D <= 0.0 else (3.0 * R * beta + 2.0 * f.b * D * u) / (3.0 * R + 2.0 * f.b * D)
+    p = shift(f, q_r, q_l, psi)
+    if D <= 0.0 or abs(u - beta) >= 0.5 * pi or abs(q_r - q_l) >= pi:
+        return p, psi, 0.0, 0  # apart, or tilted beyond a right angle: the depths say which
+    low, high = min(beta, u), max(beta, u)
+    for count in range(1, ITERATIONS_MAX):
+        if 3.0 * R * sin(psi - beta) / (D + R - R * cos(psi - beta)) + 2.0 * f.b * tan(psi - u) > 0.0:
+            high = psi
+        else:
+            low = psi
+        to_p, to_psi, K = correction(f, q_r, q_l, p, psi)
+        p, psi = p + to_p, psi + to_psi
+        if abs(to_psi) < PRECISION and abs(to_p) < PRECISION * f.a:
+            return p, psi, K, count
+        if not low <= psi <= high:
+            psi = 0.5 * (low + high)
+            p = shift(f, q_r, q_l, psi)
+    return p, psi, 0.0, ITERATIONS_MAX
+
+
+@lean
+def shift(f: Fingers, q_r: float, q_l: float, psi: float) -> float:
+    """Return p at which the tips press equally hard on an object at psi, where they touch it [m]."""
+    (rx, ry), (lx, ly) = centre(f, 1.0, q_r), centre(f, -1.0, q_l)
+    r, left = cos(psi) * rx + sin(psi) * ry, cos(psi) * lx + sin(psi) * ly
+    share = cos(psi - q_r) / (cos(psi - q_r) + cos(psi - q_l)) if f.b > 0.0 else 0.5
+    return share * (2.0 * f.a + f.w - r + left) - (f.a + 0.5 * f.w - r)
+
+
+@lean
+def correction(f: Fingers, q_r: float, q_l: float, p: float, psi: float) -> tuple[float, float, float]:
+    """Return Newton's step of p [m] and psi [rad] by (G3), and K_psi here [N m/rad]."""
+    g_p = g_psi = H_pp = H_px = H_xx = 0.0
+    for i in range(2):
+        s, q = (1.0, q_r) if i == 0 else (-1.0, q_l)
+        cx, cy = centre(f, s, q)
+        across, sigma = cos(psi) * cx + sin(psi) * cy, cos(psi) * cy - sin(psi) * cx
+        d = f.a + 0.5 * f.w - s * (across - p)
+        _, N, M, _, N_d, N_x, _, M_x, _, _ = springs(f.b, f.E, f.k, d, psi - q, 0.0)
+        turn = -s * sigma  # of d with psi
+        g_p += s * N
+        g_psi += N * turn + M
+        H_pp += N_d
+        H_px += s * (N_d * turn + N_x)
+        H_xx += (N_d * turn + 2.0 * N_x) * turn + M_x + N * s * across
+    K = H_xx - H_px * H_px / H_pp
+    to_psi = (g_p * H_px / H_pp - g_psi) / K
+    return -(g_p + H_px * to_psi) / H_pp, to_psi, K

@@ -1,0 +1,23 @@
+"""The state of a hand, and what can be read of it, as the kernels keep them in two flat arrays."""
+
+import numpy as np
+
+from hil_sim.physics.compiled import Array
+
+X, Y, PSI, SLIDE_R, SLIDE_L, Q_R, Q_L = range(7)  # the slides are d_t of the tips
+RATES = 7  # here the speeds of the same begin
+GRIPPED, JAM_R, JAM_L = range(14, 17)  # 0 or 1; an object that is not gripped stands on its stand
+STATE = 17
+
+# What is read: of the right finger here, of the left one in the next place.
+D, THETA, NORMAL, MOMENT, ALONG, LOAD, MOTOR = range(0, 14, 2)
+ENERGY, STIFFNESS = 14, 15
+READ = 16
+
+
+def lying(L: float, q_r: float, q_l: float) -> Array:
+    """Return a hand at rest and its object on the stand, in the middle at the height L [m] of upright fingers."""
+    state = np.zeros(STATE)
+    state[Y] = L
+    state[[Q_R, Q_L]] = q_r, q_l
+    return state
