@@ -12,7 +12,10 @@ P_MOSFET_MA = 4000
 PARTS = (
     ("U1", "Raspberry Pi Pico or Pico 2", "1", "MicroPython, 26 pins, a watchdog, flash for two slots."),
     ("U2, U3", "PCA9685", "1 or 2", "16 outputs of 12 bits, all off by one register; the second from 17 coils on."),
-    ("U4", "INA226, R1 20 mΩ 1 % 1 W", "1", "Current and voltage in one, averaged, and ALERT in hardware."),
+    (
+        "U4", "INA226, R1 20 mΩ (with joints 10 mΩ) 1 % 1 W", "1",
+        "Current and voltage in one, averaged, and ALERT in hardware.",
+    ),
     ("U5", "74HC423", "1", "Retriggerable, and its reset does not trigger; 110 k and 1 µF film: 0.45 R C = 50 ms."),
     ("U6", "74LVC1G00", "1", "/OE is low only while both are there: monostable and emergency-stop loop."),
     (
@@ -35,42 +38,49 @@ PARTS = (
     ("NTC", "10 k, B 3950, and 10 k 1 %", "1", "The core's temperature; open and short are seen as such."),
     ("U7", "MCP2515, crystal 8 MHz, 3.3 V transceiver", "option", "CAN, once the robot has a number; not CAN FD."),
     ("U8", "LSM6DS3TR-C", "spheres", "Attitude, in the core's axes."),
+    ("", "Digital servo, its potentiometer's wiper brought out", "a joint each", "±90° from 0.5 to 2.5 ms, 6 V."),
+    ("U9", "MCP3208", "joints", "Eight inputs of 12 bits: currents and angles of the joints, and four to spare."),
+    (
+        "U10, R2, R3", "INA2180A2, two of 10 mΩ 1 % 1 W", "joints",
+        "Each servo's current as 0.5 V/A: gain 50 (TI SBOS741); 6.6 A fill the range.",
+    ),
+    ("", "Angle camera, 3.3 V, I2C 0x33", "joints", "ASSUMED, with its registers: `hil_sim/devices/anglecamera.py`."),
     ("", "Isolated USB serial adapter, 3.3 V", "1", "The host's ground must not carry coil current."),
 )  # fmt: skip
 POWER = (
-    "robot", "supply [V]", "one coil [mA]", "at once", "at once [mA]", "limit [mA]", "power [W]", "shunt [mV]",
+    "robot", "supply [V]", "one [mA]", "at once", "at once [mA]", "limit [mA]", "power [W]", "shunt [mV]",
     "F1 [A]", "switch",
 )  # fmt: skip
+NETS = {number: net for number, net, _ in PINS}
 Table = Callable[[Sequence[str], Iterable[tuple[str, ...]]], str]
 
 
 def fields(robots: Path, table: Table) -> dict[str, str]:
     """Return what the template of the page leaves open."""
     profiles = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(robots.glob("*.json"))]
-    profiles = [profile for profile in profiles if any(row["kind"] == "sma" for row in profile["channels"])]
     return {
         "pins": table(("GP", "net", ""), [(str(number), net, about) for number, net, about in PINS]),
         "parts": table(("", "part", "how many", "why"), PARTS),
-        "wiring": table(("robot", "coils"), [(profile["robot"], wiring(profile)) for profile in profiles]),
-        "power": table(
-            POWER,
-            [power(profile) for profile in profiles],
-        ),
-    }  # fmt: skip
+        "wiring": table(("robot", "coils or joints"), [(profile["robot"], wiring(profile)) for profile in profiles]),
+        "power": table(POWER, [power(profile) for profile in profiles]),
+    }
 
 
 def wiring(profile: dict) -> str:
-    """Return each coil of a robot with the net of its gate."""
-    rows = [
-        (row["label"], (row["chip"] - 0x60) * 16 + row["output"]) for row in profile["channels"] if row["kind"] == "sma"
-    ]
-    return ", ".join(f"{label} G{gate}" for label, gate in rows)
+    """Return each coil of a robot with the net of its gate, each joint with that of its pulses and its two inputs."""
+    return ", ".join(f"{row['label']} {_net(row)}" for row in profile["channels"])
+
+
+def _net(row: dict) -> str:
+    if row["kind"] == "servo":
+        return f"{NETS[row['pin']]}, current CH{row['current']}, angle CH{row['angle']}"
+    return f"G{(row['chip'] - 0x60) * 16 + row['output']}"
 
 
 def power(profile: dict) -> tuple[str, ...]:
-    """Return the row of a robot: what it takes from its supply when cold, at full duty."""
-    supply, coil = profile["supply"], profile["coil"]
-    one_ma = profile["supply_mv"] * 1000 // (coil["resistance_mohm"] + coil["wiring_mohm"])
+    """Return the row of a robot: what it takes from its supply when its coils are cold, or its servos stall."""
+    supply = profile["supply"]
+    one_ma = _one_ma(profile)
     together_ma = min(one_ma * supply["at_once_max"], supply["current_max_ma"])
     limit_ma = supply["current_max_ma"]
     mosfet = profile["supply_mv"] >= P_MOSFET_MV and limit_ma <= P_MOSFET_MA
@@ -81,3 +91,11 @@ def power(profile: dict) -> tuple[str, ...]:
         str(limit_ma), f"{watts:.1f}", f"{limit_ma * supply['shunt_mohm'] / 1000:.0f}", f"{fuse_a:g}",
         "Q23" if mosfet else "K1",
     )  # fmt: skip
+
+
+def _one_ma(profile: dict) -> int:
+    """Return the current of a coil at full duty, or that at which a servo counts as stalled."""
+    if "coil" not in profile:
+        return profile["servo"]["stall_ma"]
+    coil = profile["coil"]
+    return profile["supply_mv"] * 1000 // (coil["resistance_mohm"] + coil["wiring_mohm"])

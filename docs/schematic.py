@@ -1,4 +1,4 @@
-"""Draws docs/schematic.svg: the core board, in six sheets on one page, so that an engineer can solder it.
+"""Draws docs/schematic.svg: the core board, in nine sheets on one page, so that an engineer can solder it.
 
 A name beside a pin is a net: equal names are one wire. `python docs/generate.py` writes the file.
 """
@@ -17,8 +17,9 @@ TITLES = (
     ((29.5, 1.2), "4  Coil supply: measured, then switched"),
     ((29.5, -8.3), "5  Output enable: heartbeat, e-stop, over-current"),
     ((29.5, -20.3), "6  Options"),
-    ((-2.5, -16.3), "7  Sensing and strap"),
+    ((-2.5, -19.3), "7  Sensing and strap"),
     ((13.5, -24.2), "8  Memory of warmth, about a minute"),
+    ((-2.5, -32.2), "9  Joints: servos on the switched supply, their currents and angles, and an angle camera"),
 )
 
 
@@ -37,6 +38,7 @@ def svg() -> str:
         _options(drawing)
         _sensing(drawing)
         _memory(drawing)
+        _joints(drawing)
     text = drawing.get_imagedata("svg").decode()
     return re.sub(r"<svg ", '<svg style="background:white" ', text, count=1) + "\n"
 
@@ -75,10 +77,10 @@ def _note(drawing, place, text: str) -> None:
 def _processor(drawing) -> None:
     left = [("VBUS", "USB 5V"), ("VSYS", "5V"), ("3V3(OUT)", "3V3"), ("GND", "GND")]
     right = [(f"GP{pin}", net) for pin, net, _ in PINS]
-    _chip(drawing, "U1  Raspberry Pi Pico (RP2040) or Pico 2", (3.0, -6.5), left, right)
+    _chip(drawing, "U1  Raspberry Pi Pico (RP2040) or Pico 2", (3.0, -8.2), left, right)
     _note(
         drawing,
-        (-2.5, -14.6),
+        (-2.5, -17.8),
         (
             "The console is the Pico's own USB; the robot's protocol is on GP0, GP1.\n"
             "100 nF at every chip between 3V3 and GND; 10 uF at the PWM chips."
@@ -219,16 +221,16 @@ def _options(drawing) -> None:
 def _sensing(drawing) -> None:
     left = [("VS", "3V3"), ("IN+", "IN+"), ("IN-", "IN-"), ("VBUS", "VBUS"), ("A0, A1, GND", "GND")]
     right = [("SDA", "SDA"), ("SCL", "SCL"), ("/ALERT", "/ALERT")]
-    _chip(drawing, "U4  INA226  0x40", (3.0, -19.5), left, right)
-    drawing += elm.Vdd().at((0.0, -23.5)).label("3V3")
-    drawing += (top := elm.Resistor().at((0.0, -23.5)).down().label("10k 1 %", loc="bottom"))
+    _chip(drawing, "U4  INA226  0x40", (3.0, -22.5), left, right)
+    drawing += elm.Vdd().at((0.0, -26.5)).label("3V3")
+    drawing += (top := elm.Resistor().at((0.0, -26.5)).down().label("10k 1 %", loc="bottom"))
     drawing += elm.Dot().at(top.end)
     drawing += (ntc := elm.Thermistor().at(top.end).down().label("NTC 10k 3950", loc="bottom"))
     drawing += elm.Ground().at(ntc.end)
     drawing += (line := elm.Line().at(top.end).right().length(1.6))
     _net(drawing, line.end, "NTC")
-    _net(drawing, (6.5, -24.5), "STRAP", "left")
-    drawing += (jumper := elm.Switch().at((6.5, -24.5)).right().label("J1 service"))
+    _net(drawing, (6.5, -27.5), "STRAP", "left")
+    drawing += (jumper := elm.Switch().at((6.5, -27.5)).right().label("J1 service"))
     drawing += elm.Ground().at(jumper.end)
 
 
@@ -250,3 +252,28 @@ def _memory(drawing) -> None:
     drawing += elm.Label().at((fet.source[0] + 0.2, -26.4)).label("Q25 2N7002", loc="right", halign="left", fontsize=10)
     drawing += elm.Ground().at(fet.source)
     _net(drawing, fet.drain, "/WARM", "top")
+
+
+def _joints(drawing) -> None:
+    left = [("VDD, VREF", "3V3"), ("CLK", "ADC_SCK"), ("DIN", "ADC_MOSI"), ("DOUT", "ADC_MISO"), ("/CS", "/ADC_CS")]
+    right = [("CH0", "I_R"), ("CH1", "I_L"), ("CH2", "POT_R"), ("CH3", "POT_L"), ("CH4..7", "GND")]
+    _chip(drawing, "U9  MCP3208", (3.0, -35.8), [*left, ("AGND, DGND", "GND")], right)
+    left = [("VS", "3V3"), ("IN1+", "COIL+"), ("IN1-", "V_R"), ("IN2+", "COIL+"), ("IN2-", "V_L"), ("GND", "GND")]
+    _chip(drawing, "U10  INA2180A2, gain 50", (15.5, -35.8), left, [("OUT1", "I_R"), ("OUT2", "I_L")])
+    for number, label in enumerate("RL"):
+        pins = [("pulses", f"SERVO{number}"), ("+", f"V_{label}"), ("-", "GND")]
+        _chip(drawing, f"Servo {label}", (34.0, -34.2 - 4.2 * number), pins, [("wiper", f"POT_{label}")])
+        y = -34.2 - 4.2 * number
+        _net(drawing, (22.5, y), "COIL+", "left")
+        drawing += (shunt := elm.Resistor().at((22.5, y)).right().label(f"R{2 + number} 10 mOhm 1 %"))
+        _net(drawing, shunt.end, f"V_{label}")
+        _net(drawing, (22.5, y - 1.6), f"POT_{label}", "left")
+        drawing += (down := elm.Resistor().at((22.5, y - 1.6)).right().label("1M"))
+        drawing += elm.Ground().at(down.end)
+    _chip(
+        drawing,
+        "Angle camera  0x33",
+        (43.8, -34.6),
+        [("VDD", "3V3"), ("SDA", "SDA"), ("SCL", "SCL"), ("GND", "GND")],
+        [],
+    )

@@ -8,6 +8,7 @@ import pytest
 
 from docs import board, hardwarepage, schematic
 from hil_sim import board as bench
+from hil_sim.devices.mcp3208 import REFERENCE_V, STEPS
 
 ROOT = Path(__file__).parents[1]
 PICO = board.constants()
@@ -16,7 +17,7 @@ NETS = {number: net for number, net, _ in board.PINS}
 
 @pytest.mark.parametrize(
     "name", ["PWR_EN", "HEARTBEAT", "SDA", "SCL", "ESTOP_SENSE", "ALERT", "SERVOS", "MISO", "CAN_SELECT", "SCK", "MOSI",
-    "CAN_INTERRUPT", "MONITOR", "WARM"],
+    "CAN_INTERRUPT", "MONITOR", "WARM", "ADC_MISO", "ADC_SELECT", "ADC_SCK", "ADC_MOSI"],
 )  # fmt: skip
 def test_the_bench_is_wired_to_the_pins_that_the_firmware_uses(name):
     assert getattr(bench, name) == PICO[name]
@@ -44,7 +45,7 @@ def test_boot_and_main_repeat_the_pins_and_addresses_of_the_board():
 def test_no_pin_is_wired_twice_and_every_pin_of_the_firmware_is():
     pins = [number for number, _, _ in board.PINS]
     named = {"TX", "RX", "STRAP", "THERMISTOR", "PWR_EN", "HEARTBEAT", "SDA", "SCL", "ESTOP_SENSE", "ALERT", "MISO"}
-    named |= {"CAN_SELECT", "SCK", "MOSI", "CAN_INTERRUPT", "WARM"}
+    named |= {"CAN_SELECT", "SCK", "MOSI", "CAN_INTERRUPT", "WARM", "ADC_MISO", "ADC_SELECT", "ADC_SCK", "ADC_MOSI"}
 
     assert len(set(pins)) == len(pins)
     assert set(pins) == {PICO[name] for name in named} | set(PICO["SERVOS"])
@@ -53,7 +54,7 @@ def test_no_pin_is_wired_twice_and_every_pin_of_the_firmware_is():
 def test_every_net_of_the_processor_is_drawn_at_another_end_too():
     drawn = re.findall(r"<tspan[^>]*>([^<]*)</tspan>", schematic.svg())
 
-    away = {"TX", "RX", "SERVO0", "SERVO1", "SERVO2"}  # on connectors
+    away = {"TX", "RX", "SERVO2"}  # on connectors
     lonely = [net for net in NETS.values() if net not in away and drawn.count(net) < 2]
     assert lonely == []
 
@@ -77,3 +78,29 @@ def test_a_robot_below_the_mosfets_voltage_gets_a_relay():
     row = hardwarepage.power(profile)
 
     assert row == ("circular", "2", "199", "6", "1194", "1500", "2.4", "30", "1.6", "K1")
+
+
+@pytest.mark.parametrize("name", ["fingers", "fingers-experiment"])
+def test_each_joint_of_a_robot_is_wired_as_the_board_is(name):
+    profile = json.loads((ROOT / f"firmware/robots/{name}.json").read_text(encoding="utf-8"))
+
+    assert hardwarepage.wiring(profile) == "R SERVO0, current CH0, angle CH2, L SERVO1, current CH1, angle CH3"
+    assert profile["camera"]["address"] == bench.CAMERA
+    assert {channel["pin"] for channel in profile["channels"]} <= set(bench.SERVOS)
+
+
+def test_the_supply_of_servos_is_laid_out_for_their_stall():
+    profile = json.loads((ROOT / "firmware/robots/fingers.json").read_text(encoding="utf-8"))
+
+    row = hardwarepage.power(profile)
+
+    assert row == ("fingers", "6", "2400", "2", "4800", "6000", "28.8", "60", "6.3", "K1")
+
+
+def test_a_count_of_the_converter_is_the_current_that_the_amplifier_makes_it():
+    profile = json.loads((ROOT / "firmware/robots/fingers.json").read_text(encoding="utf-8"))
+    shunt_ohm, gain = 0.010, 50  # as drawn
+
+    ua = REFERENCE_V / STEPS / (shunt_ohm * gain) * 1e6
+
+    assert profile["servo"]["ua_per_count"] == round(ua)
