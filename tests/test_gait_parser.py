@@ -85,7 +85,7 @@ def test_a_sign_needs_no_blanks_around_it():
 def test_a_group_with_a_quantifier_reads_as_words():
     condition = one("guard all front.temperature < 45 C").condition
 
-    assert (condition.quantifier.text, condition.subject.text, condition.quantity.text) == (
+    assert (condition.quantifier.text, condition.subjects[0].text, condition.quantity.text) == (
         "all",
         "front",
         "temperature",

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from host.gait.checker import Report, check
+from host.gait.checker import check
 from host.gait.compiler import Compiled, compile_script
 from host.gait.diagnostics import GaitError
 from host.gait.script import Script
+from host.gait.verdict import Report
 from host.profile import Profile
 
 

@@ -21,7 +21,7 @@ def declare_circle(node: tree.Circle, scope: Scope) -> None:
     name = node.name.text
     if name in scope.circles:
         scope.problems.add(node.name.place, "E161", f"`{name}` is declared twice")
-    masks = [scope.coil(coil) for coil in node.coils]
+    masks = [scope.channel(coil) for coil in node.coils]
     scope.circles[name] = ()  # known, and reported if nothing better follows
     if None in masks or scope.coils(node.coils) is None:
         return

@@ -82,18 +82,25 @@ class Builder(Transformer[Token, Any]):
 
     def fire(self, items: Items) -> tree.Fire:
         """Return a `fire` with its coils and clauses as written."""
-        coils = tuple(self._coil(item) for item in items[1:] if isinstance(item, Token))
-        clauses = tuple(item for item in items[1:] if isinstance(item, tree.Clause))
-        last = clauses[-1] if clauses else coils[-1] if coils else None
-        place = self._place(items[0])
-        return tree.Fire(coils, clauses, place.upto(last.place) if last else place)
+        return tree.Fire(*self._order(items))
+
+    def move(self, items: Items) -> tree.Move:
+        """Return a `move` with its joints and clauses as written."""
+        return tree.Move(*self._order(items))
+
+    def orient(self, items: Items) -> tree.Orient:
+        """Return an `orient` with its angle and clauses as written."""
+        word, target, *clauses = items
+        last = clauses[-1] if clauses else target
+        place = self._place(word)
+        return tree.Orient(target, tuple(clauses), place.upto(last.place) if last else place)
 
     def clause(self, items: Items) -> tree.Clause:
         """Return a word and its value."""
         word, value = items
         return tree.Clause(str(word), value, self._place(word).upto(value.place))
 
-    timeout = clause
+    timeout = motion = course = clause
 
     def otherwise(self, items: Items) -> tree.Otherwise:
         """Return `else NAME`."""
@@ -116,19 +123,19 @@ class Builder(Transformer[Token, Any]):
 
     def condition(self, items: Items) -> tree.Condition:
         """Return a condition."""
-        quantifier, subject, quantity, compare, value = items
-        first = subject if quantifier is None else quantifier
+        *words, quantity, compare, value = items
+        quantified = len(words) > 1 and words[0].type != "REFERENCE"
         return tree.Condition(
-            None if quantifier is None else self._name(quantifier),
-            self._coil(subject),
+            self._name(words[0]) if quantified else None,
+            tuple(self._coil(item) for item in words[quantified:]),
             self._name(quantity),
             str(compare),
             value,
-            self._place(first).upto(value.place),
+            self._place(words[0]).upto(value.place),
         )
 
     def angle(self, items: Items) -> tree.Angle:
-        """Return a condition on how the robot lies."""
+        """Return a condition on how the robot or its object lies."""
         quantity, compare, value = items
         return tree.Angle(self._name(quantity), str(compare), value, self._place(quantity).upto(value.place))
 
@@ -175,6 +182,14 @@ class Builder(Transformer[Token, Any]):
     def negative(self, items: Items) -> tree.Negative:
         """Return a value with a minus before it."""
         return tree.Negative(items[1], self._place(items[0]).upto(items[1].place))
+
+    def _order(self, items: Items) -> tuple[tuple[tree.Coil, ...], tuple[tree.Clause, ...], Place]:
+        """Return what an order is for, its clauses and its place."""
+        named = tuple(self._coil(item) for item in items[1:] if isinstance(item, Token))
+        clauses = tuple(item for item in items[1:] if isinstance(item, tree.Clause))
+        last = clauses[-1] if clauses else named[-1] if named else None
+        place = self._place(items[0])
+        return named, clauses, place.upto(last.place) if last else place
 
     def _name(self, token: Token) -> Name:
         return Name(str(token), self._place(token))

@@ -5,10 +5,11 @@ Everything that is wrong is reported before it gives up, so that one run shows a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
-from host.gait import aims, orders, tree, units
+from host.gait import aims, motions, orders, tree, units
 from host.gait.declare import check_head, declare_circles, declare_defs, declare_params
 from host.gait.diagnostics import Problems, did_you_mean
 from host.gait.lines import code_part
@@ -21,6 +22,14 @@ from host.profile import Profile
 
 STATEMENTS_MAX = 50_000
 COUNT_MAX = 0xFFFF
+SINGLE: dict[type[Statement], Callable[[Any, Scope, int], list[Op]]] = {
+    tree.Fire: orders.fire,
+    tree.Move: motions.move,
+    tree.Orient: motions.orient,
+    tree.Wait: orders.wait,
+    tree.WaitUntil: orders.wait_until,
+    tree.Let: aims.let,
+}
 
 
 @dataclass(frozen=True)
@@ -78,18 +87,12 @@ class _Expander:
         if self.left < 0:
             raise TooLarge
         match node:
-            case tree.Fire():
-                return orders.fire(node, where.scope, self._step(node.place, where))
-            case tree.Wait():
-                return orders.wait(node, where.scope, self._step(node.place, where))
             case tree.WaitUntil() | tree.Let() if where.together:
                 word = "a let" if isinstance(node, tree.Let) else "a wait for a condition"
                 self.problems.add(node.place, "E143", f"{word} cannot stand in a together")
                 return []
-            case tree.Let():
-                return aims.let(node, where.scope, self._step(node.place, where))
-            case tree.WaitUntil():
-                return orders.wait_until(node, where.scope, self._step(node.place, where))
+            case tree.Fire() | tree.Move() | tree.Orient() | tree.Wait() | tree.WaitUntil() | tree.Let():
+                return SINGLE[type(node)](node, where.scope, self._step(node.place, where))
             case tree.Repeat():
                 return self._repeat(node, where)
             case tree.Together():
@@ -146,7 +149,7 @@ class _Expander:
         self.called.add(name)
         if define is None:
             if name not in where.scope.unread:
-                help = did_you_mean(name, [*self.defs, "fire", "wait", "repeat"])
+                help = did_you_mean(name, [*self.defs, "fire", "move", "wait", "repeat"])
                 self.problems.add(node.name.place, "E162", f"there is no def `{name}`", help)
             return []
         if name in where.defs:
@@ -165,7 +168,7 @@ class _Expander:
 
     def _argument(self, node: tree.Expression | tree.Coils, scope: Scope) -> Value:
         if isinstance(node, tree.Coils):
-            mask = scope.coils(node.coils)
+            mask = scope.channels(node.coils)
             return CoilSet(mask) if mask else None
         if isinstance(node, tree.Reference):
             return scope.lookup(node)

@@ -39,6 +39,28 @@ class Fire:
 
 
 @dataclass(frozen=True, slots=True)
+class Move:
+    """Turn the joints of `mask` to an angle within `time_ms`, and hold them there; does not wait."""
+
+    mask: int
+    target_centideg: int
+    time_ms: int
+    step: int
+    node: tree.Move
+
+
+@dataclass(frozen=True, slots=True)
+class Orient:
+    """Turn the object with the two joints of `mask` for `time_ms`, then hold; does not wait."""
+
+    mask: int
+    target_centideg: int
+    time_ms: int
+    step: int
+    node: tree.Orient
+
+
+@dataclass(frozen=True, slots=True)
 class Aim:
     """Choose the coil `ahead` places after the one nearest to down in `circle`, a list of channels, and keep it."""
 
@@ -85,7 +107,8 @@ class Loop:
     node: tree.Repeat
 
 
-Op = Fire | Aim | Delay | Wait | Guard | Loop
+Order = Fire | Move | Orient
+Op = Order | Aim | Delay | Wait | Guard | Loop
 
 
 def walk(plan: Iterable[Op]) -> Iterator[Op]:
@@ -115,7 +138,7 @@ def _block(plan: Iterable[Op]) -> bytes:
     return b"".join(parts)
 
 
-def _op(op: Fire | Aim | Delay | Wait | Guard) -> bytes:  # noqa: PLR0911  # one for each op
+def _op(op: Order | Aim | Delay | Wait | Guard) -> bytes:  # noqa: PLR0911  # one for each op
     if isinstance(op, Delay):
         return bytes(program.delay(op.time_ms))
     if isinstance(op, Wait):
@@ -124,6 +147,10 @@ def _op(op: Fire | Aim | Delay | Wait | Guard) -> bytes:  # noqa: PLR0911  # one
         return bytes(program.guard(op.condition))
     if isinstance(op, Aim):
         return bytes(program.aim(op.kept, op.ahead, list(op.circle)))
+    if isinstance(op, Move):
+        return bytes(program.move(op.mask, op.target_centideg, op.time_ms))
+    if isinstance(op, Orient):
+        return bytes(program.orient(op.target_centideg, op.time_ms))
     if op.kept is not None:
         return bytes(program.aimed(op.kept, op.duty_permille, op.time_ms, op.cutoff_decidegc, op.ramp_ms))
     if op.ramp_ms:

@@ -16,11 +16,13 @@ from host.gait.units import Quantity, UnitError
 from host.profile import Profile
 
 EVERY = "all"
+MOVE_IT = "move it: `move {} to 8 deg over 2 s`"
+FIRE_IT = "fire it: `fire {} at 60 % for 600 ms`"
 
 
 @dataclass(frozen=True, slots=True)
 class CoilSet:
-    """Some coils, as a mask of channels."""
+    """Some coils or joints, as a mask of channels."""
 
     mask: int
 
@@ -78,38 +80,46 @@ class Scope:
         self._wrong_kind(node, quantity, kind)
         return None
 
-    def measured(self, node: Expression, kind: str, least: int, most: int) -> int | None:
-        """Return the whole number of base units of a value that must be of `kind` and within [least, most]."""
+    def measured(self, node: Expression, kind: str, least: int, most: int, size: int = 1) -> int | None:
+        """Return the whole number of `size` base units of a value that must be of `kind` and within [least, most]."""
         quantity = self.of_kind(node, kind)
         if quantity is None:
             return None
-        number = quantity.rounded()
+        number = round(quantity.value / size)
         if not least <= number <= most:
-            low, high = (Quantity(Fraction(limit), kind) for limit in (least, most))
+            low, high = (Quantity(Fraction(limit * size), kind) for limit in (least, most))
             self.problems.add(node.place, "E125", f"{quantity} is outside {low} .. {high}")
             return None
         return number
 
     def coils(self, nodes: Iterable[tree.Coil]) -> int | None:
-        """Return the mask of a list of coils, groups and arguments."""
+        """Return the mask of a list of coils; a joint among them is reported."""
+        return self._all_of(nodes, self.profile.coil_labels, "E139", MOVE_IT)
+
+    def joints(self, nodes: Iterable[tree.Coil]) -> int | None:
+        """Return the mask of a list of joints; a coil among them is reported."""
+        return self._all_of(nodes, self.profile.joint_labels, "E191", FIRE_IT)
+
+    def channels(self, nodes: Iterable[tree.Coil]) -> int | None:
+        """Return the mask of a list of coils, joints, groups and arguments."""
         mask, sound = 0, True
         for node in nodes:
-            named = self.coil(node)
+            named = self.channel(node)
             if named is None:
                 sound = False
                 continue
             if mask & named:
                 twice = " ".join(self.profile.named(mask & named))
-                self.problems.add(node.place, "E136", f"coil {twice} is named twice")
+                self.problems.add(node.place, "E136", f"{self.word(mask & named)} {twice} is named twice")
             mask |= named
         return mask if sound else None
 
-    def coil(self, node: tree.Coil) -> int | None:
-        """Return the mask of one coil, group or argument."""
+    def channel(self, node: tree.Coil) -> int | None:
+        """Return the mask of one coil, joint, group or argument."""
         if isinstance(node, Reference):
             value = self.lookup(node)
             if isinstance(value, Quantity):
-                self.problems.add(node.place, "E165", f"`${node.name}` is {value}, not a coil")
+                self.problems.add(node.place, "E165", f"`${node.name}` is {value}, not a {self.word()}")
                 return None
             if isinstance(value, Chosen):
                 help = "fire it by itself"
@@ -118,7 +128,7 @@ class Scope:
             return None if value is None else value.mask
         known = self.groups()
         if node.text not in known:
-            message = f"the robot {self.profile.robot} has no coil `{node.text}`"
+            message = f"the robot {self.profile.robot} has no {self.word()} `{node.text}`"
             help = did_you_mean(node.text, known) or f"it has: {' '.join(known)}"
             self.problems.add(node.place, "E131", message, help)
             return None
@@ -140,8 +150,19 @@ class Scope:
             message = f"the robot {self.profile.robot} has no attitude sensor"
             self.problems.add(place, "E313", message)
 
+    def watches(self, place: Place) -> None:
+        """Report a statement about the object's angle, on a robot that does not see it."""
+        if self.profile.camera is None:
+            self.problems.add(place, "E316", f"the robot {self.profile.robot} has no camera")
+
+    def word(self, mask: int = -1) -> str:
+        """Return what the channels of `mask`, or all of the robot, are called."""
+        named = self.profile.named(mask)
+        kinds = (("coil", self.profile.coil_labels), ("joint", self.profile.joint_labels))
+        return " or ".join(word for word, labels in kinds if set(labels) & set(named))
+
     def groups(self) -> dict[str, int]:
-        """Return the mask of every coil and group by its name."""
+        """Return the mask of every coil, joint and group by its name."""
         labels = self.profile.labels
         known = {label: 1 << channel for channel, label in enumerate(labels)}
         known.setdefault(EVERY, (1 << len(labels)) - 1)
@@ -181,9 +202,23 @@ class Scope:
     def _quantity(self, node: Reference) -> Quantity | None:
         value = self.lookup(node)
         if isinstance(value, CoilSet | Chosen):
-            self.problems.add(node.place, "E165", f"`${node.name}` is a coil, not a value")
+            what = self.word(value.mask) if isinstance(value, CoilSet) else "coil"
+            self.problems.add(node.place, "E165", f"`${node.name}` is a {what}, not a value")
             return None
         return value
+
+    def _all_of(self, nodes: Iterable[tree.Coil], labels: tuple[str, ...], code: str, help: str) -> int | None:
+        """Return the mask of a list whose channels must all be among `labels`; `all` is all of these."""
+        known, nodes = self.profile.mask(labels), tuple(nodes)
+        if len(nodes) == 1 and isinstance(nodes[0], Name) and nodes[0].text == EVERY and labels:
+            return self.groups()[EVERY] & known or None
+        mask = self.channels(nodes)
+        for node in nodes if mask is not None and mask & ~known else ():
+            others = self.profile.named((self.channel(node) or 0) & ~known)
+            if others:
+                what = f"{others[0]} is a {self.word(self.profile.mask(others))}"
+                self.problems.add(node.place, code, what, help.format(others[0]))
+        return mask if mask is None or not mask & ~known else None
 
     def _wrong_kind(self, node: Expression, quantity: Quantity, kind: str) -> None:
         place: Place = node.place

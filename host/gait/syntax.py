@@ -19,13 +19,15 @@ FORMS = {
     "let": "let NAME = CIRCLE[down + 1]",
     "def": "def NAME(ARGUMENTS):",
     "fire": "fire COILS at 60 % for 600 ms [until 95 C] [overlap 200 ms] [ramp 100 ms]",
+    "move": "move JOINTS to 28 deg over 2 s [overlap 500 ms]",
+    "orient": "orient 5 deg for 3 s [overlap 3 s]",
     "repeat": "repeat 3:",
     "together": "together:",
     "wait": "wait 500 ms, or wait until A.temperature > 95 C timeout 4 s else continue",
     "guard": "guard any.temperature > 110 C",
 }
 BLOCKS = ("def", "repeat", "together")
-CLAUSES = ("at", "for", "until", "overlap", "ramp", "timeout", "else", "is")
+CLAUSES = ("at", "for", "until", "overlap", "ramp", "to", "over", "timeout", "else", "is")
 KEYWORDS = (*FORMS, *CLAUSES)
 NAMED = {"NUMBER": "a number", "NAME": "a name", "TEXT": "a text in quotation marks"}
 SIGNS = {
@@ -104,7 +106,7 @@ class _Reader:
         """A line that begins with a word which is no statement."""
         word = self.first
         if word in KEYWORDS and word not in FORMS:
-            help = "this word belongs to a statement: put it on the line of its `fire` or `wait`"
+            help = "this word belongs to a statement: put it on the line of its `fire`, `move` or `wait`"
             return self._word("E107", f"`{word}` does not begin a statement", help)
         if word.isidentifier() and word not in FORMS and self.accepts == {"LPAR"}:
             near = did_you_mean(word, FORMS)

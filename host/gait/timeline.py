@@ -6,9 +6,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from host.gait.diagnostics import Problems
-from host.gait.plan import Delay, Fire, Loop, Op
+from host.gait.plan import Delay, Fire, Loop, Move, Op, Order, Orient
 
 EVENTS_MAX = 5_000
+CONFLICTS = {
+    Fire: "a coil of this order is on already",
+    Move: "a joint of this order has another one already",
+    Orient: "a joint has another order already, and orient takes both",
+}
 
 
 class TooLarge(Exception):
@@ -17,15 +22,15 @@ class TooLarge(Exception):
 
 @dataclass
 class _Timeline:
-    """Fires at their times [ms], each with the number of the statement it came from."""
+    """Orders at their times [ms], each with the number of the statement it came from."""
 
-    events: list[tuple[int, int, Fire]] = field(default_factory=list)
+    events: list[tuple[int, int, Order]] = field(default_factory=list)
     turns: int = 0
 
     def lay(self, ops: Iterable[Op], at_ms: int, child: int) -> int:
         """Put down `ops` from `at_ms` on; return when they end."""
         for op in ops:
-            if isinstance(op, Fire):
+            if isinstance(op, Order):
                 self.events.append((at_ms, child, op))
             elif isinstance(op, Delay):
                 at_ms += op.time_ms
@@ -39,7 +44,7 @@ class _Timeline:
 
 
 def together(children: Iterable[list[Op]], problems: Problems) -> list[Op]:
-    """Return the ops of `children`, all starting now and ending with the longest; a coil in two at once is reported."""
+    """Return the ops of `children`, all starting now and ending with the longest; who is in two at once is reported."""
     timeline = _Timeline()
     end_ms = max((timeline.lay(ops, 0, child) for child, ops in enumerate(children)), default=0)
     timeline.events.sort(key=lambda event: event[:2])
@@ -58,23 +63,27 @@ def duration_ms(ops: Iterable[Op]) -> int:
     return total
 
 
-def _with_delays(events: Iterable[tuple[int, int, Fire]], end_ms: int) -> Iterator[Op]:
+def _with_delays(events: Iterable[tuple[int, int, Order]], end_ms: int) -> Iterator[Op]:
     now_ms, step = 0, 0
-    for at_ms, _, fire in events:
+    for at_ms, _, order in events:
         if at_ms > now_ms:
-            yield Delay(at_ms - now_ms, step or fire.step)
-        yield fire
-        now_ms, step = at_ms, fire.step
+            yield Delay(at_ms - now_ms, step or order.step)
+        yield order
+        now_ms, step = at_ms, order.step
     if end_ms > now_ms:
         yield Delay(end_ms - now_ms, step)
 
 
-def _report_conflicts(events: Iterable[tuple[int, int, Fire]], problems: Problems) -> None:
-    busy: list[tuple[int, int, Fire]] = []  # end, child, order
-    for at_ms, child, fire in events:
+def _report_conflicts(events: Iterable[tuple[int, int, Order]], problems: Problems) -> None:
+    busy: list[tuple[int, int, Order]] = []  # end, child, order
+    for at_ms, child, order in events:
         busy = [entry for entry in busy if entry[0] > at_ms]
-        for _, other, order in busy:
-            if other != child and order.kept == fire.kept and order.mask & fire.mask:
-                help = f"the other order is on line {order.node.place.line}"
-                problems.add(fire.node.place, "E135", "a coil of this order is on already", help)
-        busy.append((at_ms + fire.time_ms, child, fire))
+        for _, other, earlier in busy:
+            if other != child and _kept(earlier) == _kept(order) and earlier.mask & order.mask:
+                help = f"the other order is on line {earlier.node.place.line}"
+                problems.add(order.node.place, "E135", CONFLICTS[type(order)], help)
+        busy.append((at_ms + order.time_ms, child, order))
+
+
+def _kept(order: Order) -> int | None:
+    return order.kept if isinstance(order, Fire) else None

@@ -26,7 +26,7 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """A word as written: a coil, a group, a parameter, a choice."""
+    """A word as written: a coil, a joint, a group, a parameter, a choice."""
 
     text: str
     place: Place
@@ -98,10 +98,10 @@ class Otherwise:
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """`A.temperature > 95 C`, `all front.temperature < 45 C`: evaluated on the robot, never on the host."""
+    """`A.temperature > 95 C`, `any R L.current > 500 mA`: evaluated on the robot, never on the host."""
 
     quantifier: Name | None
-    subject: Coil
+    subjects: tuple[Coil, ...]
     quantity: Name
     compare: str
     value: Expression
@@ -110,7 +110,7 @@ class Condition:
 
 @dataclass(frozen=True, slots=True)
 class Angle:
-    """`roll > 30 deg`: how the robot lies, evaluated on the robot."""
+    """`roll > 30 deg`, `orientation > 4.9 deg`: how robot or object lies, evaluated on the robot."""
 
     quantity: Name
     compare: str
@@ -195,17 +195,43 @@ class Define:
     place: Place
 
 
-@dataclass(frozen=True, slots=True)
-class Fire:
-    """Heat coils: the order carries its own end."""
+class Order:
+    """A statement with clauses."""
 
-    coils: tuple[Coil, ...]
+    __slots__ = ()
     clauses: tuple[Clause, ...]
     place: Place
 
     def clause(self, word: str) -> Clause | None:
         """Return the first clause that begins with `word`, or None."""
         return next((clause for clause in self.clauses if clause.word == word), None)
+
+
+@dataclass(frozen=True, slots=True)
+class Fire(Order):
+    """Heat coils: the order carries its own end."""
+
+    coils: tuple[Coil, ...]
+    clauses: tuple[Clause, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Move(Order):
+    """Turn joints to an angle within a time."""
+
+    joints: tuple[Coil, ...]
+    clauses: tuple[Clause, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Orient(Order):
+    """Turn the object that the joints hold to an angle, and keep it there for a time."""
+
+    target: Expression | None
+    clauses: tuple[Clause, ...]
+    place: Place
 
 
 @dataclass(frozen=True, slots=True)
@@ -276,6 +302,8 @@ Statement = (
     | Define
     | Let
     | Fire
+    | Move
+    | Orient
     | Repeat
     | Together
     | Wait

@@ -1,26 +1,21 @@
-"""Plays a plan in its worst case: every wait for a condition over at once, so that no coil has time to cool.
+"""Plays a plan in its worst case, for all that it orders: coils that heat, joints that turn.
 
-The arithmetic is the firmware's, rounded against the script: power from the nominal supply, the heat budget as energy
-that leaks with its own time constant, orders that end on the control step after their time. Cut-offs are taken as never
-reached. Loops are played until their turns repeat themselves, so that ten thousand turns cost no more than a few.
-
-A coil that the robot chooses may be any of its circle, and the same one each time. What it is given is played on a
-coil of its own, one for each place that keeps one, and added to each coil that it may be: the sum of two peaks is never
-less than the peak of the sum.
+Loops are played until their turns repeat themselves, so that ten thousand turns cost no more than a few.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from fractions import Fraction
-from math import ceil
+from collections.abc import Iterable, Sequence
+from typing import Any, Protocol
 
-from host.gait import tree
-from host.gait.coiltrial import STEP_MS, CoilTrial, energy_uj, heat_uj
+from host.gait.clock import Clock
+from host.gait.coiltrial import CoilTrial
 from host.gait.diagnostics import Problems
-from host.gait.plan import Aim, Delay, Fire, Loop, Op, Wait, walk
+from host.gait.heating import Heating
+from host.gait.jointtrial import JointTrial
+from host.gait.plan import Loop, Op
+from host.gait.turning import Turning
 from host.profile import Profile
-from protocol import program
 
 EVENTS_MAX = 100_000
 
@@ -33,222 +28,95 @@ class TooLong(Exception):
         self.op = op
 
 
+class Part(Protocol):
+    """What is tried: the coils of a robot, or its joints."""
+
+    def expect(self, plan: Sequence[Op]) -> None:
+        """Look at all that will come."""
+
+    def take(self, op: Op) -> None:
+        """Take an op, before its time has passed."""
+
+    def state(self) -> tuple[tuple[object, ...], ...]:
+        """Return all that the next turn of a loop depends on, as seen from now."""
+
+    def sums(self) -> Any:
+        """Return what `skip` needs to know of the beginning of a turn."""
+
+    def skip(self, turns: int, turn_ms: int, most_ms: int, sums: Any) -> None:
+        """Count `turns` more turns that are copies of the last one; the clock goes on afterwards."""
+
+    def tail_ms(self) -> int:
+        """Return how long it takes until every order has ended."""
+
+    def finish(self) -> None:
+        """Take it that nothing more comes."""
+
+
 class Trial:
     """The worst case of a plan for the robot of `profile`; what breaks a limit is added to `problems`."""
 
     def __init__(self, profile: Profile, problems: Problems) -> None:
-        self._count = len(profile.labels)
-        self._all = [CoilTrial(reach=1 << channel) for channel in range(self._count)]
-        self._all += [CoilTrial() for _ in range(program.AIMS_MAX)]
-        self.now_ms = 0
-        self.tail_ms = 0  # how long coils are on after the last op
-        self.at_once_peak = 0
-        self.current_peak_ma = 0
-        supply_mv, coil_mohm = profile.supply_mv, profile.coil.resistance_mohm
-        loop_mohm = coil_mohm + profile.coil.wiring_mohm
-        self.full_ma = ceil(Fraction(1000 * supply_mv, loop_mohm))
-        self.full_uw = ceil(Fraction(1000 * supply_mv * supply_mv * coil_mohm, loop_mohm * loop_mohm))
-        self._profile, self._limits, self._problems = profile, profile.coil, problems
-        self._waits = 0
+        self.clock = Clock()
+        self.heating = Heating(profile, problems, self.clock)
+        self.turning = Turning(profile, problems, self.clock)
+        self.tail_ms = 0  # how long orders last after the last op
+        self._parts: tuple[Part, ...] = (self.heating, self.turning)
         self._left = EVENTS_MAX
 
-    def play(self, plan: Iterable[Op]) -> None:
-        """Play all of it, and let every coil end."""
-        for op in walk(plan):
-            if isinstance(op, Aim):
-                self._all[self._count + op.kept].reach |= sum(1 << channel for channel in op.circle)
+    @property
+    def now_ms(self) -> int:
+        """Return how far the plan has come if every wait is over at once."""
+        return self.clock.now_ms
+
+    @property
+    def coils(self) -> list[CoilTrial]:
+        """Return what each coil of the robot came to."""
+        return self.heating.coils
+
+    @property
+    def joints(self) -> list[JointTrial]:
+        """Return what each joint of the robot came to."""
+        return self.turning.joints
+
+    def play(self, plan: Sequence[Op]) -> None:
+        """Play all of it, and let every order end."""
+        for part in self._parts:
+            part.expect(plan)
         self._run(plan)
-        self.tail_ms = max(0, *(coil.off_ms - self.now_ms for coil in self._all))
-        self.now_ms += self.tail_ms
-        for channel in range(len(self._all)):
-            self._settle(channel)
-        self._share()
+        self.tail_ms = max(part.tail_ms() for part in self._parts)
+        self.clock.now_ms += self.tail_ms
+        for part in self._parts:
+            part.finish()
 
     def _run(self, ops: Iterable[Op]) -> None:
         for op in ops:
             self._left -= 1
             if self._left < 0:
                 raise TooLong(op)
-            if isinstance(op, Fire):
-                self._fire(op)
-            elif isinstance(op, Delay):
-                self.now_ms += op.time_ms
-            elif isinstance(op, Wait):
-                self._wait(op)
-            elif isinstance(op, Aim):
-                self._aim(op)
-            elif isinstance(op, Loop):
+            if isinstance(op, Loop):
                 self._loop(op)
+                continue
+            for part in self._parts:
+                part.take(op)
+            self.clock.pass_by(op)
 
     def _loop(self, loop: Loop) -> None:
         """Play turns until one leaves everything as it found it; the rest are its copies."""
-        before = self._state()
+        before = [part.state() for part in self._parts]
         for turn in range(loop.count):
-            start_ms = self.now_ms
-            sums = [(coil.on_ms, coil.energy_uj, coil.orders) for coil in self._all]
+            now_ms, most_ms = self.clock.now_ms, self.clock.most_ms
+            sums = [part.sums() for part in self._parts]
             self._run(loop.body)
-            after = self._state()
+            after = [part.state() for part in self._parts]
             if after == before:
-                self._skip(loop.count - turn - 1, self.now_ms - start_ms, sums)
+                turn_ms, turn_most_ms = self.clock.now_ms - now_ms, self.clock.most_ms - most_ms
+                self._skip(loop.count - turn - 1, turn_ms, turn_most_ms, sums)
                 return
             before = after
 
-    def _state(self) -> tuple[tuple[int, ...], ...]:
-        """Return all that the next turn depends on, as seen from now."""
-        rows = []
-        for channel, coil in enumerate(self._all):
-            self._settle(channel)
-            coil.settle_others(self.now_ms, self._limits)
-            left_ms, off_ms = max(coil.end_ms - self.now_ms, -STEP_MS), max(coil.off_ms - self.now_ms, 0)
-            on = left_ms > -STEP_MS
-            since_ms = max(coil.since_ms - self.now_ms, -self._limits.on_max_ms - 1) if on else 0
-            duty = coil.duty_permille if off_ms else 0
-            waited = off_ms > 0 and coil.waits != self._waits
-            rest_ms = max(coil.rested_ms(self._limits) - self.now_ms, 0)
-            rows.append((left_ms, off_ms, since_ms, duty, coil.heat_uj, rest_ms, waited, coil.others_uj))
-        return tuple(rows)
-
-    def _skip(self, turns: int, turn_ms: int, sums: list[tuple[int, int, int]]) -> None:
-        """Count `turns` more turns that are copies of the last one."""
-        for coil, (on_ms, taken_uj, orders) in zip(self._all, sums, strict=True):
-            coil.on_ms += turns * (coil.on_ms - on_ms)
-            coil.energy_uj += turns * (coil.energy_uj - taken_uj)
-            coil.orders += turns * (coil.orders - orders)
-            coil.end_ms += turns * turn_ms
-            coil.off_ms += turns * turn_ms
-            coil.since_ms += turns * turn_ms
-            coil.begin_ms += turns * turn_ms
-            coil.heat_at_ms += turns * turn_ms
-            coil.others_at_ms += turns * turn_ms
-        self.now_ms += turns * turn_ms
-
-    def _fire(self, op: Fire) -> None:
-        chosen = [] if op.kept is None else [self._count + op.kept]
-        for channel in chosen or [channel for channel in range(self._count) if op.mask >> channel & 1]:
-            self._settle(channel)
-            self._order(channel, op)
-        on = [coil for coil in self._all if coil.end_ms > self.now_ms]
-        current_ma = sum(-(-self.full_ma * coil.duty_permille // 1000) for coil in on)
-        self.at_once_peak = max(self.at_once_peak, len(on))
-        self.current_peak_ma = max(self.current_peak_ma, current_ma)
-        supply = self._profile.supply
-        if len(on) > supply.at_once_max:
-            self._complain(op, "E304", f"{len(on)} coils would be on at once, at most {supply.at_once_max}")
-        if current_ma > supply.current_max_ma:
-            self._complain(op, "E305", f"the supply would give {current_ma} mA, at most {supply.current_max_ma} mA")
-
-    def _order(self, channel: int, op: Fire) -> None:
-        """Begin a new order on one coil, in place of the one it may have."""
-        coil, kin = self._all[channel], list(self._kin(channel))
-        label = self._label(channel, op)
-        if coil.off_ms > self.now_ms:
-            self._replace(coil)
-        on = [each for each in kin if each.end_ms + STEP_MS > self.now_ms]
-        left_ms = max((each.rested_ms(self._limits) - self.now_ms for each in kin if each not in on), default=0)
-        if left_ms > 0 and (coil not in on or len(kin) > 1):
-            self._complain(op, "E312", f"coil {label} must rest for {left_ms} ms more before it is fired again")
-        coil.since_ms = min((each.since_ms for each in on), default=self.now_ms)
-        time_ms = op.time_ms + -op.time_ms % STEP_MS
-        coil.begin_ms, coil.end_ms, coil.off_ms = self.now_ms, self.now_ms + op.time_ms, self.now_ms + time_ms
-        coil.order, coil.waits = op, self._waits
-        coil.duty_permille, coil.power_uw = op.duty_permille, -(-self.full_uw * op.duty_permille // 1000)
-        coil.orders += 1
-        coil.on_ms += time_ms
-        coil.energy_uj += energy_uj(coil.power_uw, time_ms)
-        on_ms, most_ms = coil.end_ms - coil.since_ms, self._limits.on_max_ms
-        if on_ms > most_ms:
-            message = f"coil {label} would be on for {on_ms} ms without a pause, at most {most_ms} ms"
-            self._complain(op, "E303", message)
-
-    def _kin(self, channel: int) -> Iterator[CoilTrial]:
-        """Yield this coil and all that may stand for the same one."""
-        coil = self._all[channel]
-        for other, each in enumerate(self._all):
-            if other == channel or (each.reach & coil.reach and max(other, channel) >= self._count):
-                yield each
-
-    def _label(self, channel: int, op: Fire) -> str:
-        """Return the coil as the script names it."""
-        node = op.node.coils[0]
-        if channel < self._count or not isinstance(node, tree.Reference):
-            return self._profile.labels[channel]
-        return f"${node.name}"
-
-    def _aim(self, op: Aim) -> None:
-        """Let a name stand for another coil, at worst for the hottest of those it has stood for."""
-        channel = self._count + op.kept
-        coil = self._all[channel]
-        self._settle(channel)
-        coil.settle_others(self.now_ms, self._limits)
-        if coil.end_ms > self.now_ms:
-            left_ms = coil.end_ms - self.now_ms
-            message = f"`{op.node.name.text}` may still be on for {left_ms} ms when another coil is chosen"
-            self._problems.add(op.node.place, "E315", message)
-        coil.heat_uj = coil.others_uj = max(coil.heat_uj, coil.others_uj)
-
-    def _wait(self, op: Wait) -> None:
-        """Take the wait as over at once; one for less heat, without which the script ends, leaves no more than that."""
-        self._waits += 1
-        asked = op.condition
-        if (asked.source, asked.compare, op.otherwise) != (program.HEAT, program.BELOW, program.ABORT):
-            return
-        single = asked.quantifier == program.ALL or asked.mask & (asked.mask - 1) == 0
-        chosen = [self._count + asked.mask] if asked.quantifier == program.CHOSEN else []
-        for channel in chosen or [each for each in range(self._count) if single and asked.mask >> each & 1]:
-            coil = self._all[channel]
-            self._settle(channel)
-            coil.settle_others(self.now_ms, self._limits)
-            coil.heat_uj = min(coil.heat_uj, max(asked.value, 0) * 1000)
-
-    def _share(self) -> None:
-        """Add what chosen coils came to to each coil that they may be."""
-        for chosen in self._all[self._count :]:
-            for coil in self.coils:
-                if coil.reach & chosen.reach and chosen.order is not None:
-                    coil.orders += chosen.orders
-                    coil.on_ms += chosen.on_ms
-                    coil.energy_uj += chosen.energy_uj
-                    coil.heat_peak_uj += chosen.heat_peak_uj
-                    self._hold(chosen.order, self._profile.labels[coil.reach.bit_length() - 1], coil.heat_peak_uj)
-
-    @property
-    def coils(self) -> list[CoilTrial]:
-        """Return what each coil of the robot came to."""
-        return self._all[: self._count]
-
-    def _replace(self, coil: CoilTrial) -> None:
-        """Take back what the old order has not had; if a wait came between, it may have had all of it."""
-        left_ms = had_ms = coil.off_ms - self.now_ms
-        if coil.end_ms > self.now_ms and coil.waits == self._waits:
-            had_ms = (coil.begin_ms - self.now_ms) % STEP_MS
-        coil.heat_uj += energy_uj(coil.power_uw, had_ms)
-        coil.on_ms -= left_ms - had_ms
-        coil.energy_uj -= energy_uj(coil.power_uw, left_ms - had_ms)
-
-    def _settle(self, channel: int) -> None:
-        """Bring the heat of one coil up to now."""
-        coil = self._all[channel]
-        on_ms = min(max(coil.off_ms - coil.heat_at_ms, 0), self.now_ms - coil.heat_at_ms)
-        if on_ms:
-            coil.heat_uj = heat_uj(coil.heat_uj, coil.power_uw, on_ms, self._limits)
-            coil.heat_peak_uj = max(coil.heat_peak_uj, coil.heat_uj)
-            self._check_heat(channel)
-        off_ms = self.now_ms - coil.heat_at_ms - on_ms
-        if off_ms and coil.heat_uj:
-            coil.heat_uj = min(coil.heat_uj, heat_uj(coil.heat_uj, 0, off_ms, self._limits))
-        coil.heat_at_ms = self.now_ms
-
-    def _check_heat(self, channel: int) -> None:
-        coil = self._all[channel]
-        if coil.order is not None:
-            self._hold(coil.order, self._label(channel, coil.order), coil.heat_uj)
-
-    def _hold(self, op: Fire, label: str, heat_uj: int) -> None:
-        """Report a coil that would hold more heat than its budget."""
-        most_mj = self._limits.heat_budget_mj
-        if heat_uj > most_mj * 1000:
-            message = f"coil {label} would hold {ceil(heat_uj / 1000)} mJ, its heat budget is {most_mj} mJ"
-            self._complain(op, "E306", message)
-
-    def _complain(self, op: Fire, code: str, message: str) -> None:
-        self._problems.add(op.node.place, code, message)
+    def _skip(self, turns: int, turn_ms: int, most_ms: int, sums: Sequence[Any]) -> None:
+        for part, sum in zip(self._parts, sums, strict=True):
+            part.skip(turns, turn_ms, most_ms, sum)
+        self.clock.now_ms += turns * turn_ms
+        self.clock.most_ms += turns * most_ms

@@ -1,7 +1,7 @@
 """Quantities of the gait language: exact numbers with a kind, and the units they are written in.
 
-Base units are the robot's own integers: ms, permille, 0.1 C, mA, mV, mJ, 0.1 deg. Arithmetic is exact (fractions) and
-is rounded once, when a value becomes an order.
+Base units are the robot's own integers: ms, permille, 0.1 C, mA, mV, mJ, 0.01 deg. Arithmetic is exact (fractions)
+and is rounded once, when a value becomes an order.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ UNITS = {
     "mA": Unit(CURRENT, 1),
     "mV": Unit(VOLTAGE, 1),
     "mJ": Unit(ENERGY, 1),
-    "deg": Unit(ANGLE, 10),
+    "deg": Unit(ANGLE, 100),
 }
 OF_KIND = {
     kind: [name for name, unit in UNITS.items() if unit.kind == kind] for kind in {u.kind for u in UNITS.values()}

@@ -1,0 +1,26 @@
+"""The two clocks of a worst case: for coils that have no time to cool, and for joints that are left alone for long."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from host.gait.coiltrial import STEP_MS
+from host.gait.plan import Delay, Op, Wait
+
+
+@dataclass(slots=True)
+class Clock:
+    """How far a plan has come if every wait is over at once, and if every wait runs out."""
+
+    now_ms: int = 0
+    most_ms: int = 0
+    waits: int = 0
+
+    def pass_by(self, op: Op) -> None:
+        """Let the time of one op pass; a wait may end one control step late."""
+        if isinstance(op, Delay):
+            self.now_ms += op.time_ms
+            self.most_ms += op.time_ms
+        elif isinstance(op, Wait):
+            self.waits += 1
+            self.most_ms += op.timeout_ms + STEP_MS

@@ -1,0 +1,52 @@
+"""One joint in the worst case of a plan: its order, where it may be, how long it has held."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from host.gait.coiltrial import STEP_MS
+from host.gait.plan import Move, Orient
+
+
+@dataclass(slots=True)
+class JointTrial:
+    """One joint during the trial, and what it came to; `least` and `most` are the ends of its range."""
+
+    least_centideg: int
+    most_centideg: int
+    moves: int = 0
+    lowest_centideg: int | None = None  # that it was told to go to, or may have been by an orient
+    highest_centideg: int | None = None
+    fastest_centideg_per_s: int = 0
+    held_ms: int = 0
+    order: Move | Orient | None = None  # None: limp
+    begin_ms: int = 0  # of its order, if every wait is over at once
+    begin_most_ms: int = 0  # if every wait runs out
+    low_centideg: int = 0  # where it may have been when its order began
+    high_centideg: int = 0
+
+    def place(self, now_ms: int, most_ms: int) -> tuple[int, int]:
+        """Return the lowest and the highest angle at which it may be told to stand; a limp joint lies anywhere."""
+        order = self.order
+        if not isinstance(order, Move):
+            return self.least_centideg, self.most_centideg
+        passed = (now_ms - self.begin_ms - STEP_MS, most_ms - self.begin_most_ms + STEP_MS)
+        shares = [min(max(passed_ms, 0), order.time_ms) for passed_ms in passed]
+        ways = [(start, (order.target_centideg - start) * share, order.time_ms)
+                for start in (self.low_centideg, self.high_centideg) for share in shares]  # fmt: skip
+        return min(start + way // time for start, way, time in ways), max(
+            start - -way // time for start, way, time in ways
+        )
+
+    def held(self, most_ms: int) -> int:
+        """Return for how long it has had no order, at most: up to the control step after that."""
+        if self.order is None:
+            return 0
+        passed_ms = most_ms - self.begin_most_ms - self.order.time_ms
+        return passed_ms + STEP_MS if passed_ms > 0 else 0
+
+    def reach(self, low_centideg: int, high_centideg: int) -> None:
+        """Count these angles among those that it was told."""
+        lowest, highest = self.lowest_centideg, self.highest_centideg
+        self.lowest_centideg = low_centideg if lowest is None else min(lowest, low_centideg)
+        self.highest_centideg = high_centideg if highest is None else max(highest, high_centideg)

@@ -1,0 +1,49 @@
+"""Orders to joints worked out: a move and an orient, in the robot's own integers."""
+
+from __future__ import annotations
+
+from host.gait import clauses, tree, units
+from host.gait.plan import Delay, Move, Op, Orient
+from host.gait.scope import Scope
+
+ANGLE_MAX_CENTIDEG = 0x7FFF
+
+
+def move(node: tree.Move, scope: Scope, step: int) -> list[Op]:
+    """Return the order, and the time until the next statement may start."""
+    clauses.once(node.clauses, scope)
+    if not node.joints:
+        scope.problems.add(node.place, "E190", "which joints?", "name them after `move`")
+    mask = scope.joints(node.joints)
+    target = clauses.value(node, "to", scope, units.ANGLE, -ANGLE_MAX_CENTIDEG, ANGLE_MAX_CENTIDEG)
+    time_ms = clauses.time_ms(node, "over", scope)
+    overlap_ms = clauses.part_ms(node, "overlap", scope)
+    clauses.need(node, scope, ("to", "E192", "angle", "to 28 deg"), ("over", "E193", "time", "over 2 s"))
+    if not mask or target is None or time_ms is None or not clauses.fit(node, time_ms, {"overlap": overlap_ms}, scope):
+        return []
+    return _lasting(Move(mask, target, time_ms, step, node), overlap_ms)
+
+
+def orient(node: tree.Orient, scope: Scope, step: int) -> list[Op]:
+    """Return the order, which takes the first two joints, and the time until the next statement may start."""
+    clauses.once(node.clauses, scope)
+    profile, target = scope.profile, None
+    scope.watches(node.place)
+    if profile.camera is not None and (profile.orient is None or len(profile.joint_labels) < 2):
+        scope.problems.add(node.place, "E316", f"the robot {profile.robot} turns no object")
+    if node.target is None:
+        scope.problems.add(node.place, "E194", "orient to which angle?", "write `orient 5 deg for 3 s`")
+    else:
+        target = scope.measured(node.target, units.ANGLE, -ANGLE_MAX_CENTIDEG, ANGLE_MAX_CENTIDEG)
+    time_ms = clauses.time_ms(node, "for", scope)
+    overlap_ms = clauses.part_ms(node, "overlap", scope)
+    clauses.need(node, scope, ("for", "E195", "time", "for 3 s"))
+    if target is None or time_ms is None or not clauses.fit(node, time_ms, {"overlap": overlap_ms}, scope):
+        return []
+    return _lasting(Orient(profile.mask(profile.joint_labels[:2]), target, time_ms, step, node), overlap_ms)
+
+
+def _lasting(order: Move | Orient, overlap_ms: int) -> list[Op]:
+    """Return the order and the wait for its end, less the time by which the next statement overlaps it."""
+    wait_ms = order.time_ms - overlap_ms
+    return [order, Delay(wait_ms, order.step)] if wait_ms else [order]

@@ -1,0 +1,132 @@
+"""The joints in the worst case of a plan: how far and how fast they are told to turn, how long they are left alone.
+
+Where a joint stands is known from its last order; while a wait may cut its way short it is anywhere on the part that is
+left. At the start, and after an orient, it is taken to be anywhere in its range. The firmware brings a joint forward
+once in each control step, so that it may be one step off.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from host.gait.clock import Clock
+from host.gait.diagnostics import Problems
+from host.gait.jointtrial import JointTrial
+from host.gait.plan import Move, Op, Orient
+from host.gait.tree import Order, Place
+from host.profile import Profile
+
+
+class Turning:
+    """The joints of a robot; one that has none takes no order."""
+
+    def __init__(self, profile: Profile, problems: Problems, clock: Clock) -> None:
+        self._labels = profile.joint_labels
+        self._first = len(profile.coil_labels)
+        self._profile, self._problems, self._clock = profile, problems, clock
+        self.joints: list[JointTrial] = []
+        if self._labels:
+            limits = profile.servo
+            self.joints = [JointTrial(limits.least_centideg, limits.most_centideg) for _ in self._labels]
+
+    def expect(self, plan: Sequence[Op]) -> None:
+        """Nothing that comes changes what is known now."""
+
+    def take(self, op: Op) -> None:
+        """Take what is for joints."""
+        if not isinstance(op, Move | Orient):
+            return
+        chosen = [joint for joint in range(len(self.joints)) if op.mask >> self._first + joint & 1]
+        if isinstance(op, Orient):
+            chosen = self._ready(op, chosen)
+        for joint in chosen:
+            self._hold(joint)
+            self._begin(self.joints[joint], joint, op)
+
+    def state(self) -> tuple[tuple[object, ...], ...]:
+        """Return all that the next turn of a loop depends on, as seen from now."""
+        return tuple(self._row(joint) for joint in self.joints)
+
+    def sums(self) -> list[int]:
+        """Return how many orders each joint has had so far."""
+        return [joint.moves for joint in self.joints]
+
+    def skip(self, turns: int, turn_ms: int, most_ms: int, sums: list[int]) -> None:
+        """Count `turns` more turns that are copies of the last one; what no turn orders goes on as it was."""
+        for joint, moves in zip(self.joints, sums, strict=True):
+            if joint.moves > moves:
+                joint.moves += turns * (joint.moves - moves)
+                joint.begin_ms += turns * turn_ms
+                joint.begin_most_ms += turns * most_ms
+
+    def tail_ms(self) -> int:
+        """Return how long it takes until every joint has arrived; then it only holds."""
+        now_ms = self._clock.now_ms
+        return max((max(j.begin_ms + j.order.time_ms - now_ms, 0) for j in self.joints if j.order), default=0)
+
+    def finish(self) -> None:
+        """Hold to account how long each joint was left alone, up to the end of the program."""
+        for joint in range(len(self.joints)):
+            self._hold(joint)
+
+    def _row(self, joint: JointTrial) -> tuple[object, ...]:
+        order = joint.order
+        if order is None:
+            return (None,)
+        passed_ms = min(self._clock.now_ms - joint.begin_ms, order.time_ms)
+        longest_ms = order.time_ms + self._profile.servo.hold_max_ms + 1
+        passed_most_ms = min(self._clock.most_ms - joint.begin_most_ms, longest_ms)
+        return (id(order), joint.low_centideg, joint.high_centideg, passed_ms, passed_most_ms)
+
+    def _begin(self, trial: JointTrial, joint: int, op: Move | Orient) -> None:
+        """Begin a new order on one joint, in place of the one it may have."""
+        low, high = trial.place(self._clock.now_ms, self._clock.most_ms)
+        if isinstance(op, Move):
+            self._check_speed(trial, joint, op, max(op.target_centideg - low, high - op.target_centideg))
+            trial.reach(op.target_centideg, op.target_centideg)
+        else:
+            trial.reach(trial.least_centideg, trial.most_centideg)
+        trial.low_centideg, trial.high_centideg = low, high
+        trial.begin_ms, trial.begin_most_ms = self._clock.now_ms, self._clock.most_ms
+        trial.order = op
+        trial.moves += 1
+
+    def _check_speed(self, trial: JointTrial, joint: int, op: Move, way_centideg: int) -> None:
+        speed, most = -(-way_centideg * 1000 // op.time_ms), self._profile.servo.slew_centideg_per_s
+        trial.fastest_centideg_per_s = max(trial.fastest_centideg_per_s, speed)
+        if speed > most:
+            message = f"joint {self._labels[joint]} would turn at {speed / 100:g} deg/s, at most {most / 100:g} deg/s"
+            help = "" if isinstance(trial.order, Move) else "where it begins is not known here: it may be anywhere"
+            self._problems.add(_value(op.node, "over"), "E318", message, help)
+
+    def _ready(self, op: Orient, chosen: Sequence[int]) -> list[int]:
+        """Return the joints that are held; limp ones, and too large a swing, are reported."""
+        limits, held = self._profile.orient, [joint for joint in chosen if self.joints[joint].order]
+        if len(held) < len(chosen):
+            label = self._labels[min(set(chosen) - set(held))]
+            help = f"move it first: `move {label} to 8 deg over 2 s`"
+            self._problems.add(op.node.place, "E320", f"joint {label} is not held when orient begins", help)
+            return held
+        assert limits is not None
+        ends = [self.joints[joint].place(self._clock.now_ms, self._clock.most_ms) for joint in chosen]
+        swing_centideg = max(abs(sum(low for low, _ in ends)), abs(sum(high for _, high in ends))) / 2
+        if swing_centideg > limits.swing_max_centideg:
+            most = f"{limits.swing_max_centideg / 100:g} deg"
+            message = f"the joints may be swung by {swing_centideg / 100:g} deg when orient begins, at most {most}"
+            self._problems.add(op.node.place, "E321", message)
+        return held
+
+    def _hold(self, joint: int) -> None:
+        """Report a joint that was left alone for too long."""
+        trial, most_ms = self.joints[joint], self._profile.servo.hold_max_ms
+        held_ms = trial.held(self._clock.most_ms)
+        trial.held_ms = max(trial.held_ms, held_ms)
+        if held_ms > most_ms and trial.order:
+            label = self._labels[joint]
+            message = f"joint {label} would be without an order for {held_ms} ms after this one, at most {most_ms} ms"
+            self._problems.add(trial.order.node.place, "E319", message)
+
+
+def _value(node: Order, word: str) -> Place:
+    clause = node.clause(word)
+    return clause.value.place if clause else node.place

@@ -1,0 +1,140 @@
+"""What the checker proves of a script: its worst case, for people and for JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+
+from host.gait.diagnostics import Diagnostic, exit_code
+from host.profile import Profile
+
+
+@dataclass(frozen=True, slots=True)
+class CoilReport:
+    """The most that one coil can come to."""
+
+    label: str
+    orders: int
+    on_ms: int
+    energy_mj: int
+    heat_peak_mj: int
+
+
+@dataclass(frozen=True, slots=True)
+class JointReport:
+    """The most that one joint can come to; the angles are None when it is never moved."""
+
+    label: str
+    orders: int
+    least_centideg: int | None
+    most_centideg: int | None
+    fastest_centideg_per_s: int
+    held_ms: int
+
+    @property
+    def angles(self) -> str:
+        """Return the range of the angles that it is told."""
+        if self.least_centideg is None or self.most_centideg is None:
+            return ""
+        return f"{self.least_centideg / 100:.1f} .. {self.most_centideg / 100:.1f} deg"
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The worst case of a script, and where it breaks a limit."""
+
+    script: str
+    profile: Profile
+    longest_ms: int
+    shortest_ms: int
+    coils: tuple[CoilReport, ...]
+    joints: tuple[JointReport, ...]
+    at_once: int
+    current_ma: int
+    program_bytes: int
+    depth: int
+    guards: int
+    steps: int
+    diagnostics: tuple[Diagnostic, ...]
+
+    @property
+    def sound(self) -> bool:
+        """Return whether the script keeps every limit."""
+        return not self.diagnostics
+
+    @property
+    def exit_code(self) -> int:
+        """Return 0, or 4 when a limit would be broken."""
+        return exit_code(self.diagnostics)
+
+    def as_dict(self) -> dict[str, object]:
+        """Return the fields for JSON; what the robot has none of is not told."""
+        return {
+            "script": self.script,
+            "robot": self.profile.robot,
+            "sound": self.sound,
+            "longest_ms": self.longest_ms,
+            "shortest_ms": self.shortest_ms,
+            **(self._coil_fields() if self.coils else {}),
+            **(self._joint_fields() if self.joints else {}),
+            "program_bytes": {"most": self.program_bytes, "limit": self.profile.program.bytes_max},
+            "depth": self.depth,
+            "guards": self.guards,
+            "steps": self.steps,
+            "coils": {coil.label: _fields(coil) for coil in self.coils},
+            "joints": {joint.label: _fields(joint) for joint in self.joints},
+            "diagnostics": [item.as_dict() for item in self.diagnostics],
+        }
+
+    def lines(self) -> Iterator[str]:
+        """Yield the report as a user reads it."""
+        supply = self.profile.supply
+        verdict = "keeps" if self.sound else "does not keep"
+        yield f"{self.script} {verdict} the limits of {self.profile.robot}"
+        yield f"  time      {self.shortest_ms / 1000:.1f} s at least, {self.longest_ms / 1000:.1f} s at most"
+        if self.coils:
+            yield f"  at once   {self.at_once} of {supply.at_once_max} coils"
+            yield f"  supply    {self.current_ma} of {supply.current_max_ma} mA"
+        yield f"  program   {self.program_bytes} of {self.profile.program.bytes_max} bytes, {self.steps} steps"
+        yield from self._coil_lines()
+        yield from self._joint_lines()
+
+    def _coil_fields(self) -> dict[str, object]:
+        supply, heat_mj = self.profile.supply, max(coil.heat_peak_mj for coil in self.coils)
+        return {
+            "at_once": {"most": self.at_once, "limit": supply.at_once_max},
+            "supply_current_ma": {"most": self.current_ma, "limit": supply.current_max_ma},
+            "heat_mj": {"most": heat_mj, "limit": self.profile.coil.heat_budget_mj},
+        }
+
+    def _joint_fields(self) -> dict[str, object]:
+        limits = self.profile.servo
+        speed = max(joint.fastest_centideg_per_s for joint in self.joints)
+        held_ms = max(joint.held_ms for joint in self.joints)
+        return {
+            "speed_centideg_per_s": {"most": speed, "limit": limits.slew_centideg_per_s},
+            "held_ms": {"most": held_ms, "limit": limits.hold_max_ms},
+        }
+
+    def _coil_lines(self) -> Iterator[str]:
+        if self.coils and (not self.joints or any(coil.orders for coil in self.coils)):
+            yield f"  coil  orders   on time    energy   heat (of {self.profile.coil.heat_budget_mj} mJ)"
+        for coil in self.coils:
+            figures = f"{coil.on_ms / 1000:7.2f} s {coil.energy_mj:6d} mJ {coil.heat_peak_mj:6d} mJ"
+            if coil.orders:
+                yield f"  {coil.label:<6}{coil.orders:6d} {figures}"
+
+    def _joint_lines(self) -> Iterator[str]:
+        if not any(joint.orders for joint in self.joints):
+            return
+        limits = self.profile.servo
+        speed, hold = f"speed (of {limits.slew_centideg_per_s / 100:g})", f"held (of {limits.hold_max_ms / 1000:g})"
+        yield f"  joint orders   {'angles':<20}{speed:>18}{hold:>18}"
+        for joint in self.joints:
+            figures = f"{joint.fastest_centideg_per_s / 100:12.1f} deg/s{joint.held_ms / 1000:16.2f} s"
+            if joint.orders:
+                yield f"  {joint.label:<6}{joint.orders:6d}   {joint.angles:<20}{figures}"
+
+
+def _fields(row: CoilReport | JointReport) -> dict[str, object]:
+    return {name: value for name, value in asdict(row).items() if name != "label"}
