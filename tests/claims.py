@@ -6,6 +6,9 @@ from dataclasses import dataclass, field
 from protocol import program
 
 
+LIMP_START_US = 200_000  # by which an order may last longer for a joint that was limp: its slew limit from end to end
+
+
 @dataclass
 class Claim:
     """Coils that may be on from `from_us` to before `until_us`, each for at most its `budget_us`."""
@@ -26,8 +29,11 @@ class Claim:
         self.until_us = min(self.until_us, now_us)
 
 
-def budgets(code: bytes) -> Iterator[tuple[int, float]]:
-    """Yield for each channel how long a program can have it on [us], all its repeats included."""
+def budgets(code: bytes, hold_ms: int = 0) -> Iterator[tuple[int, float]]:
+    """Yield for each channel how long a program can have it on [us], all its repeats included.
+
+    Joints hold for `hold_ms` after each order of a program.
+    """
     times, total_us = [1], {}
     for _, name, *arguments in program.disassemble(code):
         if name == "repeat":
@@ -41,4 +47,9 @@ def budgets(code: bytes) -> Iterator[tuple[int, float]]:
         elif name == "aimed":
             for channel in range(32):
                 total_us[channel] = total_us.get(channel, 0.0) + 1000.0 * arguments[2] * times[-1]
+        elif name in ("move", "orient"):
+            for channel in range(32):
+                if name == "orient" or arguments[0] >> channel & 1:
+                    lasts_us = 1000.0 * (arguments[-1] + hold_ms) + LIMP_START_US
+                    total_us[channel] = total_us.get(channel, 0.0) + lasts_us * times[-1]
     yield from total_us.items()

@@ -1,12 +1,14 @@
 """What holds on every bench that any test makes, whatever the test is about; told in sentences.
 
 No coil is on without an order, beyond its order's end or the lease, longer than `on_max_ms`, above its heat budget or
-hotter than its trip, each with the margin stated here. Orders are read off the line (orders.py), what the coils did
+hotter than its trip; no joint is driven without an order, beyond its order's end or the lease, outside its range or
+faster than its slew limit; each with the margin stated here. Orders are read off the line (orders.py), what the coils did
 off the bench (witness.py). A fault that breaks the very part that holds an invariant excuses what it must, see EXCUSES.
 
 MARGINS. A step is 5 ms, and the step that switches off spends up to 2.5 ms on its buses before it does. The robot
 reckons a coil's heat with its profile's resistance and without stress, the bench from what is there: the true
-temperature runs ahead of the estimate while a stretched coil transforms, most in a body that does not move.
+temperature runs ahead of the estimate while a stretched coil transforms, most in a body that does not move. Pulses are
+taken over at the end of a period: two of them may come with one step between, or with three.
 """
 
 from bisect import bisect_left
@@ -23,6 +25,8 @@ STEP_US = 5_000
 WITHIN_US = STEP_US + 2_500
 SLOT_US = 4_000  # a pause shorter than this is the firmware measuring, no pause
 TRIP_MARGIN_K = 10.0
+ANGLE_MARGIN_DEG = 0.05  # rounding of the pulses' width
+LIMP_US = 100_000  # after so long without a pulse a joint is limp, and may stand anywhere
 HEAT_MARGIN = 0.05
 
 Spell = tuple[int, int]
@@ -60,13 +64,17 @@ class Run:
     peaks_degc: Sequence[float]
     energy_j: Sequence[tuple[int, Sequence[float]]]  # of each channel up to that time
     excuses: Sequence[tuple[int, Excuse]] = field(default_factory=tuple)  # each from its time on
+    angles: Sequence[Sequence[tuple[int, float]]] = ()  # of each joint: from when on it is told which angle [deg]
 
 
 def broken(run: Run) -> Iterator[str]:
     """Yield a sentence for each invariant that did not hold."""
+    coils = len(run.profile.coil_labels)
     for channel, label in enumerate(run.profile.labels):
-        for what in (*_orders(run, channel), *_lease(run, channel), *_length(run, channel), *_heat(run, channel)):
-            yield f"coil {label} was {what}"
+        ordered = (*_orders(run, channel), *_lease(run, channel))
+        own = (*_length(run, channel), *_heat(run, channel)) if channel < coils else _path(run, channel - coils)
+        for what in (*ordered, *own):
+            yield f"{'coil' if channel < coils else 'joint'} {label} was {what}"
 
 
 def _orders(run: Run, channel: int) -> Iterator[str]:
@@ -125,6 +133,19 @@ def _heat(run: Run, channel: int) -> Iterator[str]:
     most_mj = most_heat_mj(run, channel)
     if most_mj > coil.heat_budget_mj * (1.0 + HEAT_MARGIN):
         yield f"given {most_mj:.0f} mJ, its heat budget is {coil.heat_budget_mj} mJ"
+
+
+def _path(run: Run, joint: int) -> Iterator[str]:
+    """Yield where a joint was told an angle that it may not have, or one too far from the last."""
+    servo = run.profile.servo
+    low, high, speed = servo.least_centideg / 100, servo.most_centideg / 100, servo.slew_centideg_per_s / 100
+    for at_us, deg in run.angles[joint]:
+        if not low - ANGLE_MARGIN_DEG <= deg <= high + ANGLE_MARGIN_DEG:
+            yield f"told {deg:.2f} deg at {at_us / 1e6:.4f} s, its range is {low:g} to {high:g}"
+    for (before_us, before), (at_us, deg) in pairwise(run.angles[joint]):
+        most = speed * (at_us - before_us + 2 * STEP_US) * 1e-6
+        if at_us - before_us < LIMP_US and abs(deg - before) > most + ANGLE_MARGIN_DEG:
+            yield f"told to turn by {abs(deg - before):.2f} deg at {at_us / 1e6:.4f} s, at most {most:.2f}"
 
 
 def excuse_of(fault: str) -> Excuse:

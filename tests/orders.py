@@ -14,10 +14,11 @@ from math import inf
 from host.profile import Profile
 from protocol import frames, messages, program
 from protocol.link import Link, Received
-from tests.claims import Claim, budgets
+from tests.claims import LIMP_START_US, Claim, budgets
 
 ENDED = (messages.FINISHED, messages.ABORTED, messages.TRIP, messages.DISARMED)
 TESTED = (messages.ARM, messages.CALIBRATE)
+DRIVING = (messages.FIRE, messages.MOVE, messages.ORIENT)
 TEST_US = 2_000_000  # the longest that a self-test takes between such an order and its answer
 PULSES_US = 20_000  # and all of it that one coil is on
 TALKS_MAX = 32  # sessions that are listened to at once: one read may hold so many greetings
@@ -41,6 +42,8 @@ class Ledger:
         self.claims: list[Claim] = []
         self.alive: list[tuple[int, float]] = [(0, 0)]
         self._profile = profile
+        self._joints = profile.mask(profile.joint_labels)
+        self._hold_ms = profile.servo_limits.hold_max_ms if profile.servo_limits else 0
         self._seed = seed
         self._reads = 0
         self._current: list[Claim] = []
@@ -100,6 +103,10 @@ class Ledger:
             claim = self._tested(0, now_us)
         elif message is messages.FIRE and order.duty_permille:
             claim = Claim(order.coils, now_us, now_us + order.hold_ms * 1000)
+        elif message is messages.MOVE:
+            claim = Claim(order.joints, now_us, now_us + (order.over_ms + order.hold_ms) * 1000 + LIMP_START_US)
+        elif message is messages.ORIENT:
+            claim = Claim(self._joints, now_us, now_us + (order.time_ms + order.hold_ms) * 1000)
         elif message is messages.START:
             claim = Claim((1 << 32) - 1, now_us, inf, of_program=True)
         elif message is messages.PROGRAM:
@@ -149,11 +156,11 @@ class Ledger:
             self._cancel(count, now_us)
         elif message is messages.ARM:
             self._lease_us = 1000.0 * (order.lease_ms or self._profile.session.lease_ms)
-        elif message is messages.FIRE:
-            self._replaced(order.coils, claim, count, now_us)
+        elif message in DRIVING:
+            self._replaced(claim.mask if claim else order.coils, claim, count, now_us)
         elif message is messages.START and not self._doubtful:
             self._outlives = self._may_outlive
-            claim.budget_us = dict(budgets(bytes(self._upload)))
+            claim.budget_us = dict(budgets(bytes(self._upload), self._hold_ms))
             self._live(now_us)
 
     def _replaced(self, coils: int, by: Claim | None, count: int, now_us: int) -> None:

@@ -13,10 +13,12 @@ from hil_sim.devices.mcp2515filters import choose
 from hil_sim.journal import FAULT
 from host.definitions import dictionary_of
 from host.errors import SoftrigError
+from host.limits import Joint
 from host.profile import Profile, read_profile
 from protocol.canbus import Assembler
 from tests.invariants import Excuse, Run, broken, excuse_of, spells_of
 from tests.orders import Ledger
+from tests.pulses import Pulses
 
 HEARD, TOLD, RESET = range(3)
 
@@ -32,6 +34,7 @@ class Witness:
         self._excuses: list[tuple[int, Excuse]] = []
         self._at_line()
         self._at_can()
+        self._pulses = {pin: Pulses(bench, pin) for pin in bench.board.servos}
         self._at_parts()
 
     def excuse(self, excuse: Excuse) -> None:
@@ -60,9 +63,12 @@ class Witness:
             else:
                 ledger.told(data, time_us)
         now_us = bench.clock.now_us
-        spells = [spells_of(coil.history, now_us) for coil in bench.coils]
+        pulses = [self._pulses[joint.pin] for joint in profile.channels if isinstance(joint, Joint)]
+        driven = [coil.history for coil in bench.coils] + [each.history for each in pulses]
+        spells = [spells_of(history, now_us) for history in driven]
         energies = [*self._energy_j, (now_us, bench._energy_j.tolist())]
-        return Run(profile, ledger, spells, bench._peak_degc.tolist(), energies, self._excuses)
+        angles = [each.angles(profile.servo) for each in pulses]
+        return Run(profile, ledger, spells, bench._peak_degc.tolist(), energies, self._excuses, angles)
 
     def _at_line(self) -> None:
         """Listen at the device's end of the line."""
@@ -108,6 +114,8 @@ class Witness:
 
         def changes() -> None:
             changed()
+            for each in self._pulses.values():
+                each.note()
             energy_j.append((bench.clock.now_us, bench._energy_j.tolist()))
 
         def resets(cause: int) -> None:

@@ -1,0 +1,40 @@
+"""Ears on the pulses of one servo: when it was driven, and to which angle, whatever its own dead band makes of them."""
+
+from hil_sim.bench import Bench
+from host.limits import ServoLimits
+
+LIVE_US = (400.0, 2600.0)  # widths that a servo takes for a pulse
+
+
+class Pulses:
+    """The pulses on a pin of a bench, from its first moment on; they count only while the supply is closed."""
+
+    def __init__(self, bench: Bench, pin: int) -> None:
+        self.history: list[tuple[int, float]] = []  # from when on it was driven: 1.0, or not: 0.0
+        self.widths: list[tuple[int, float]] = []  # [us], while it was driven
+        self._bench = bench
+        self._width_us = 0.0
+        pulses = bench.board.pulses
+        watcher = pulses._watchers[pin]
+
+        def pulsed(from_us: int, width_us: float, period_us: float) -> None:
+            watcher(from_us, width_us, period_us)
+            self._width_us = width_us
+            self.note()
+
+        pulses.watch(pin, pulsed)
+
+    def note(self) -> None:
+        """Take down what holds from now on."""
+        now_us = self._bench.clock.now_us
+        live = self._bench.board.powered and LIVE_US[0] <= self._width_us <= LIVE_US[1]
+        if live != bool(self.history and self.history[-1][1]):
+            self.history.append((now_us, float(live)))
+        if live and (not self.widths or self.widths[-1][1] != self._width_us):
+            self.widths.append((now_us, self._width_us))
+
+    def angles(self, limits: ServoLimits) -> list[tuple[int, float]]:
+        """Return from when on it was told which angle [deg]."""
+        middle_us = (limits.low_us + limits.high_us) / 2
+        per_us = limits.span_centideg / 100 / (limits.high_us - limits.low_us)
+        return [(time_us, (width_us - middle_us) * per_us) for time_us, width_us in self.widths]
