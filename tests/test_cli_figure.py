@@ -25,7 +25,14 @@ def no_robot(monkeypatch, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("number", "address"), [("7", "sim:sphere-b"), ("8", "sim:sphere-b?slope=10"), ("9", "sim:sphere-b")]
+    ("number", "address"),
+    [
+        ("7", "sim:sphere-b"),
+        ("8", "sim:sphere-b?slope=10"),
+        ("9", "sim:sphere-b"),
+        ("13", "sim:sphere-b"),
+        ("nail", "sim:sphere-b?tip=nail"),
+    ],
 )
 def test_a_figure_runs_on_its_own_bench(number, address, no_robot):
     with pytest.raises(Opened, match=address.replace("?", r"\?") + "$"):
@@ -35,6 +42,22 @@ def test_a_figure_runs_on_its_own_bench(number, address, no_robot):
 def test_a_robot_that_is_named_is_taken_as_it_is(no_robot):
     with pytest.raises(Opened, match=r"sim:sphere-b$"):
         softrig(["figure", "8", "-o", str(no_robot), "--robot", "sim:sphere-b"], standalone_mode=False)
+
+
+def test_a_figure_that_compares_two_benches_takes_no_robot(no_robot):
+    with pytest.raises(BadRequest, match="figure nail compares 2 robots of the bench: it takes no --robot"):
+        softrig(["figure", "nail", "-o", str(no_robot), "--robot", "sim:sphere-b"], standalone_mode=False)
+
+
+def test_a_figure_of_several_runs_is_drawn_from_all_of_them_in_their_order(monkeypatch, tmp_path):
+    drawn = []
+    pair = figures.FIGURES["nail"]._replace(draw=lambda *given: drawn.append(given))
+    monkeypatch.setitem(figures.FIGURES, "nail", pair)
+    monkeypatch.setattr(figures, "recorded", lambda wanted, robot: wanted.settings)
+
+    softrig(["figure", "nail", "-o", str(tmp_path / "a.svg")], standalone_mode=False)
+
+    assert drawn == [("?tip=nail", "?tip=radial", tmp_path / "a.svg")]
 
 
 def test_each_figure_has_its_line_of_help():

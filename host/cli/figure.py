@@ -18,54 +18,80 @@ from host.link import open_link
 from host.recording import Recording
 from host.robot import Robot
 from host.run import Keeper, run
-from host.view import check_pictures, draw_film, draw_jump, draw_poses
+from host.view import (
+    check_pictures,
+    draw_film,
+    draw_grasp,
+    draw_grips,
+    draw_jump,
+    draw_nail,
+    draw_poses,
+    draw_tilting,
+)
+
+
+class Run(NamedTuple):
+    """One run that a figure is drawn from: the script, and what is added to its address on the bench."""
+
+    script: str
+    settings: str = ""
 
 
 class Figure(NamedTuple):
-    """One figure: the script that is run, what is added to its address on the bench, what draws it, what it shows."""
+    """One figure: what is run for it, what draws it from these recordings, what it shows."""
 
-    script: str
-    settings: str
-    draw: Callable[[Recording, Path], None]
+    runs: tuple[Run, ...]
+    draw: Callable[..., None]
     shows: str
 
 
+FINGERS = "fingers-figure13.gait"
 FIGURES = {
     "3": Figure(
-        "circular-poses.gait", "", draw_poses, "the circular robot with coils A, C, E and G contracted in turn"
+        (Run("circular-poses.gait"),), draw_poses, "the circular robot with coils A, C, E and G contracted in turn"
     ),
-    "6": Figure("sphere-a-crawl.gait", "", draw_film, "prototype A crawling on level ground"),
-    "7": Figure("sphere-b-crawl.gait", "", draw_film, "prototype B crawling on level ground"),
-    "8": Figure("sphere-b-climb.gait", "?slope=10", draw_film, "prototype B climbing a slope of ten degrees"),
-    "9": Figure("sphere-b-jump.gait", "", draw_jump, "prototype B jumping, and its energies"),
+    "6": Figure((Run("sphere-a-crawl.gait"),), draw_film, "prototype A crawling on level ground"),
+    "7": Figure((Run("sphere-b-crawl.gait"),), draw_film, "prototype B crawling on level ground"),
+    "8": Figure((Run("sphere-b-climb.gait", "?slope=10"),), draw_film, "prototype B climbing a slope of ten degrees"),
+    "9": Figure((Run("sphere-b-jump.gait"),), draw_jump, "prototype B jumping, and its energies"),
+    "12": Figure((Run(FINGERS),), draw_grips, "two soft fingers parallel, gripping, and swung to either side"),
+    "13": Figure((Run(FINGERS),), draw_grasp, "the energy of their tips and both displacements"),
+    "14": Figure((Run("fingers-experiment.gait"),), draw_tilting, "a cube that tilts against the swing of two fingers"),
+    "nail": Figure(
+        (Run(FINGERS, "?tip=nail"), Run(FINGERS, "?tip=radial")),
+        draw_nail,
+        "the paper's tip against one whose energy depends on the displacement alone",
+    ),
 }
 HELP = "Draw a figure of the paper from the bench.\n\n\b\n" + "\n".join(f"{n}: {f.shows}." for n, f in FIGURES.items())
 
 
 @click.command("figure", help=HELP)
-@click.argument("number", type=click.Choice(sorted(FIGURES)))
+@click.argument("number", type=click.Choice(list(FIGURES)))
 @click.option("-o", "--output", type=click.Path(path_type=Path), required=True, metavar="FILE.svg")
 @robot_option(required=False)
 def command(number: str, output: Path, robot: str | None) -> None:
     """Draw a figure of the paper from the bench."""
     check_pictures(output)
     figure = FIGURES[number]
-    recording = recorded(figure, robot)
+    if robot is not None and len(figure.runs) > 1:
+        raise BadRequest(f"figure {number} compares {len(figure.runs)} robots of the bench: it takes no --robot")
+    recordings = [recorded(each, robot) for each in figure.runs]
     with writing(output):
-        figure.draw(recording, output)
+        figure.draw(*recordings, output)
     note(f"picture: {output}")
 
 
-def recorded(figure: Figure, robot: str | None) -> Recording:
-    """Run the figure's script, on the bench unless a robot is given, and return what was seen; raises as a run does."""
-    tree = load(script_path(figure.script))
-    address = place(tree, robot) + (figure.settings if robot is None else "")
+def recorded(wanted: Run, robot: str | None) -> Recording:
+    """Run the script, on the bench unless a robot is given, and return what was seen; raises as a run does."""
+    tree = load(script_path(wanted.script))
+    address = place(tree, robot) + (wanted.settings if robot is None else "")
     link = open_link(address)
     keeper = Keeper(observer=link.observer)
     with Robot(link, keeper, given_key()) as face:
         face.connect()
         keeper.know(face.profile.parts)
-        keeper.recording.title = f"{figure.script} on {address}"
+        keeper.recording.title = f"{wanted.script} on {address}"
         compiled, _ = proven(tree, face.profile)
         ending = run(face, compiled.program, lambda stage, done: None)
     error = ending.error()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 
 from host.recording import Recording
 from host.view.instants import Numbers, scene_times
@@ -90,6 +91,14 @@ def draw_travel(axes: Axes, recording: Recording) -> None:
     if np.ptp(travel) < STILL_MM:  # a body that stays where it is
         axes.set_ylim(travel.mean() - STILL_MM, travel.mean() + STILL_MM)
     axes.set_ylabel("travel [m]" if far else "travel [mm]")
+
+
+def label_time(axes: Axes, times: Numbers) -> None:
+    """Write the time below the lowest of several panels, from the first of these times to the last."""
+    axes.tick_params(labelbottom=True)
+    axes.xaxis.set_major_locator(MaxNLocator(nbins=10, steps=[1, 2, 5, 10]))
+    axes.set_xlabel("time [s]", labelpad=1)
+    axes.set_xlim(float(times[0]), float(times[-1]))
 
 
 def _peak(times: Numbers, estimate: Numbers, highest_degc: float, colour: str) -> Place | None:

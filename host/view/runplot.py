@@ -1,7 +1,7 @@
 """The picture of a run: (a) the body along the ground, (b) its fastest movement, (c) the curves over time.
 
-A body in space is drawn in space. Without scenes (a real robot, a plain log) only the curves are drawn. The film of a
-run shows more frames and of the curves only the travel.
+A body in space is drawn in space; a robot with joints has its own picture (handplot). Without scenes (a real robot, a
+plain log) only the curves are drawn. The film of a run shows more frames and of the curves only the travel.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ from types import ModuleType
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 
 from host.errors import BadRequest
 from host.recording import Recording
@@ -19,7 +18,9 @@ from host.view import curves, energy, march
 from host.view import film as plane
 from host.view.body import slope_of
 from host.view.film import strip_slope
+from host.view.handplot import hand_figure
 from host.view.instants import Numbers, between, fastest, nearby, scene_times
+from host.view.jointcurves import has_joints
 from host.view.sheet import BAR_MM, BOTTOM_MM, GAP_MM, LEFT_MM, NAME_MM, RIGHT_MM, TOP_MM, Sheet, heat_of
 from host.view.style import FAINT, PAGE_MM
 
@@ -34,6 +35,8 @@ def run_figure(recording: Recording) -> Figure:
     """Return the picture; BadRequest when nothing was recorded."""
     if not recording.telemetry:
         raise BadRequest("nothing to draw: the record holds no telemetry")
+    if has_joints(recording):
+        return hand_figure(recording)
     rows = len(curves.used(recording))
     duty_mm = DUTY_MM if rows <= MOST_ROWS else ROW_MM * rows
     measured: list[Panel] = [
@@ -129,8 +132,4 @@ def _draw_curves(sheet: Sheet, recording: Recording, panels: list[Panel], shaded
         axes.yaxis.set_label_coords(-label_mm / (PAGE_MM - LEFT_MM - RIGHT_MM), 0.5)
         axes.tick_params(labelbottom=False)
         sheet.y_mm -= height_mm + GAP_MM
-    axes.tick_params(labelbottom=True)
-    axes.xaxis.set_major_locator(MaxNLocator(nbins=10, steps=[1, 2, 5, 10]))
-    axes.set_xlabel("time [s]", labelpad=1)
-    times = curves.record_times(recording)
-    axes.set_xlim(float(times[0]), float(times[-1]))
+    curves.label_time(axes, curves.record_times(recording))

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 
@@ -30,10 +33,18 @@ class Sheet:
 
     def name(self, letter: str, what: str) -> None:
         """Write the panel's letter and what it shows, and go on below them."""
-        y = self.y_mm / self._height
-        self.figure.text(3.0 / PAGE_MM, y, letter, va="top", fontsize=8.5, weight="bold")
-        self.figure.text(7.0 / PAGE_MM, y - 0.3 / self._height, what, va="top", fontsize=7)
+        self.names(letter or " ", [what], 0.0)
+
+    def names(self, letters: str, whats: Sequence[str], every_mm: float) -> None:
+        """Write letters and what is shown of panels side by side, so far apart, and go on below them."""
+        for i, (letter, what) in enumerate(zip(letters, whats, strict=True)):
+            self.write(3.0 + i * every_mm, 0.0, letter.strip(), va="top", fontsize=8.5, weight="bold")
+            self.write(7.0 + i * every_mm, 0.3, what, va="top", fontsize=7)
         self.y_mm -= NAME_MM
+
+    def write(self, x_mm: float, below_mm: float, text: str, **style: Any) -> None:
+        """Write text at a place so far below the present height, which stays."""
+        self.figure.text(x_mm / PAGE_MM, (self.y_mm - below_mm) / self._height, text, **style)
 
     def bar(self, heat: ScalarMappable, height_mm: float) -> None:
         """Draw the colour bar of the coils beside a panel of that height."""
