@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 
 from protocol import program
 
-
 LIMP_START_US = 200_000  # by which an order may last longer for a joint that was limp: its slew limit from end to end
 
 

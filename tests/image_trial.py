@@ -2,7 +2,8 @@
 
 Runs under CPython and under MicroPython; tests/test_firmware_micropython.py compares what the two print. Arguments:
 the profile's path, then `lock` to forbid memory allocation in the control step. A profile with an attitude sensor gets
-one that rolls, is lost and comes back, and a program that asks where down is.
+one that rolls, is lost and comes back, and a program that asks where down is; one with joints gets an object that
+turns against them, and a camera that is lost and comes back.
 """
 
 import sys
@@ -111,6 +112,45 @@ class Imu:
         return not 300 <= self._turn < 350
 
 
+class Servo:
+    """A servo that prints its pulses, and is where they say at once."""
+
+    widths = [0, 0]
+
+    def __init__(self, place):
+        self._place = place
+
+    def pulse(self, width_ns):
+        Servo.widths[self._place] = width_ns
+        out("pulse", self._place, width_ns)
+
+    def off(self):
+        out("limp", self._place, 0)
+
+
+class Converter:
+    """Two currents, and two joints where their servos were sent last."""
+
+    def counts(self, channel):
+        if channel < 2:
+            return 200
+        return 410 + (Servo.widths[channel - 2] - 500_000) // 1000 * 3276 // 2000
+
+
+class Camera:
+    """An object that turns against the joints' swing; nobody sees it from the third second on for half a second."""
+
+    def __init__(self):
+        self.seen = True
+        self.centideg = 0
+        self.turn = 0
+
+    def read(self):
+        self.turn += 1
+        self.centideg = -((Servo.widths[0] + Servo.widths[1]) // 2 - 1_500_000) * 7 // 1000
+        return self.turn % 2 == 0 and not 600 <= self.turn < 700
+
+
 class Table:
     """A board on a table top."""
 
@@ -127,6 +167,16 @@ class Table:
 
     def imu(self, address):
         return Imu()
+
+    def servo(self, pin, hz):
+        Servo.widths[pin - 8] = 1_500_000
+        return Servo(pin - 8)
+
+    def adc(self):
+        return Converter()
+
+    def camera(self, address):
+        return Camera()
 
     def pwm(self, address):
         return Chip()
@@ -208,28 +258,59 @@ def rolling():
     return b"".join(ops)
 
 
+def turning():
+    """Return a program that moves joints and asks for them and for the object in every way."""
+    strained = program.Condition(program.LOAD, program.ANY, program.ABOVE, 2000, 0b11)
+    arrived = program.Condition(program.ANGLE, program.ALL, program.BELOW, 900, 0b11)
+    turned = program.Condition(program.ORIENTATION, program.ANY, program.ABOVE, 150, 0)
+    ops = (
+        program.guard(strained), program.step(1), program.move(1, 250, 100), program.move(2, -250, 100),
+        program.wait(arrived, 500, program.ABORT), program.delay(100), program.step(2), program.orient(200, 4000),
+        program.wait(turned, 900, program.CONTINUE), program.delay(4000), program.halt(),
+    )  # fmt: skip
+    return b"".join(ops)
+
+
+def driving(profile):
+    """Return (time_ms, message, fields) of what drives the robot at once, mistakes included."""
+    if profile.joints:
+        return [
+            (30, messages.MOVE, {"joints": 1, "target_centideg": 0, "over_ms": 10, "hold_ms": 10}),
+            (190, messages.MOVE, {"joints": 3, "target_centideg": 3001, "over_ms": 10, "hold_ms": 10}),
+            (195, messages.MOVE, {"joints": 3, "target_centideg": 321, "over_ms": 50, "hold_ms": 40}),
+            (200, messages.ORIENT, {"target_centideg": -100, "time_ms": 30, "hold_ms": 20}),
+            (2010, messages.ORIENT, {"target_centideg": 0, "time_ms": 1000, "hold_ms": 1000}),
+        ]
+    return [
+        (30, messages.FIRE, {"coils": 1, "duty_permille": 500, "hold_ms": 100}),
+        (190, messages.FIRE, {"coils": 3, "duty_permille": 1001, "hold_ms": 100}),
+        (195, messages.FIRE, {"coils": 3, "duty_permille": 321, "hold_ms": 100}),
+        (2010, messages.FIRE, {"coils": 0x80, "duty_permille": 1000, "hold_ms": 9000}),
+    ]
+
+
 def orders(profile):
     """Return (time_ms, message, fields) of a whole session, mistakes included."""
     crc = profile.crc
-    code = rolling() if profile.imu_address else script()
-    return [
-        (0, messages.HELLO, {"version": 2, "session": SESSION, "attach": 0, "nonce_a": 0, "nonce_b": 0}),
-        (20, messages.DICTIONARY, {"part": 0, "offset": 0, "count": 200}),
-        (30, messages.FIRE, {"coils": 1, "duty_permille": 500, "hold_ms": 100}),
-        (40, messages.SUBSCRIBE, {"slot": 0, "period_ms": 50, "on_change": 0, "variables": b""}),
-        (50, messages.ARM, {"session": SESSION, "lease_ms": 0, "without": 0b100}),
-        (190, messages.FIRE, {"coils": 3, "duty_permille": 1001, "hold_ms": 100}),
-        (195, messages.FIRE, {"coils": 3, "duty_permille": 321, "hold_ms": 100}),
-        (260, messages.COILS_REQUEST, {}),
-        (300, messages.PROGRAM, {"header": program.header(code, crc)}),
-        (310, messages.CODE, {"offset": 0, "code": code}),
-        (320, messages.START, {"at_ms": 0}),
-        (1900, messages.SETTINGS_REQUEST, {}),
-        (1910, messages.SET, {"setting": messages.NODE, "channel": 255, "value": 3}),
-        (1920, messages.FAULTS_REQUEST, {"skip": 0}),
-        (2000, messages.STATUS_REQUEST, {}),
-        (2010, messages.FIRE, {"coils": 0x80, "duty_permille": 1000, "hold_ms": 9000}),
-    ]
+    code = turning() if profile.joints else rolling() if profile.imu_address else script()
+    return sorted(
+        driving(profile)
+        + [
+            (0, messages.HELLO, {"version": 2, "session": SESSION, "attach": 0, "nonce_a": 0, "nonce_b": 0}),
+            (20, messages.DICTIONARY, {"part": 0, "offset": 0, "count": 200}),
+            (40, messages.SUBSCRIBE, {"slot": 0, "period_ms": 50, "on_change": 0, "variables": b""}),
+            (50, messages.ARM, {"session": SESSION, "lease_ms": 0, "without": 0 if profile.joints else 0b100}),
+            (260, messages.COILS_REQUEST, {}),
+            (300, messages.PROGRAM, {"header": program.header(code, crc)}),
+            (310, messages.CODE, {"offset": 0, "code": code}),
+            (320, messages.START, {"at_ms": 0}),
+            (1900, messages.SETTINGS_REQUEST, {}),
+            (1910, messages.SET, {"setting": messages.NODE, "channel": 255, "value": 3}),
+            (1920, messages.FAULTS_REQUEST, {"skip": 0}),
+            (2000, messages.STATUS_REQUEST, {}),
+        ],
+        key=lambda order: order[0],
+    )
 
 
 def session(core, profile):

@@ -2,8 +2,9 @@
 
 No coil is on without an order, beyond its order's end or the lease, longer than `on_max_ms`, above its heat budget or
 hotter than its trip; no joint is driven without an order, beyond its order's end or the lease, outside its range or
-faster than its slew limit; each with the margin stated here. Orders are read off the line (orders.py), what the coils did
-off the bench (witness.py). A fault that breaks the very part that holds an invariant excuses what it must, see EXCUSES.
+faster than its slew limit; each with the margin stated here. Orders are read off the line (orders.py), what the coils
+and joints did off the bench (witness.py). A fault that breaks the very part that holds an invariant excuses what it
+must, see EXCUSES.
 
 MARGINS. A step is 5 ms, and the step that switches off spends up to 2.5 ms on its buses before it does. The robot
 reckons a coil's heat with its profile's resistance and without stress, the bench from what is there: the true
