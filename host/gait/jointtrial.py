@@ -22,14 +22,16 @@ class JointTrial:
     order: Move | Orient | None = None  # None: limp
     begin_ms: int = 0  # of its order, if every wait is over at once
     begin_most_ms: int = 0  # if every wait runs out
-    low_centideg: int = 0  # where it may have been when its order began
+    low_centideg: int = 0  # where it may have been when its move began, or be while it is oriented and after
     high_centideg: int = 0
 
     def place(self, now_ms: int, most_ms: int) -> tuple[int, int]:
         """Return the lowest and the highest angle at which it may be told to stand; a limp joint lies anywhere."""
         order = self.order
-        if not isinstance(order, Move):
+        if order is None:
             return self.least_centideg, self.most_centideg
+        if isinstance(order, Orient):
+            return self.low_centideg, self.high_centideg
         passed = (now_ms - self.begin_ms - STEP_MS, most_ms - self.begin_most_ms + STEP_MS)
         shares = [min(max(passed_ms, 0), order.time_ms) for passed_ms in passed]
         ways = [(start, (order.target_centideg - start) * share, order.time_ms)

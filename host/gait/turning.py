@@ -1,8 +1,8 @@
 """The joints in the worst case of a plan: how far and how fast they are told to turn, how long they are left alone.
 
 Where a joint stands is known from its last order; while a wait may cut its way short it is anywhere on the part that is
-left. At the start, and after an orient, it is taken to be anywhere in its range. The firmware brings a joint forward
-once in each control step, so that it may be one step off.
+left. At the start it is taken to be anywhere in its range, after an orient anywhere within the swing of that. The
+firmware brings a joint forward once in each control step, so that it may be one step off.
 """
 
 from __future__ import annotations
@@ -37,11 +37,13 @@ class Turning:
         if not isinstance(op, Move | Orient):
             return
         chosen = [joint for joint in range(len(self.joints)) if op.mask >> self._first + joint & 1]
-        if isinstance(op, Orient):
-            chosen = self._ready(op, chosen)
         for joint in chosen:
             self._hold(joint)
-            self._begin(self.joints[joint], joint, op)
+        if isinstance(op, Orient):
+            self._orient(op, chosen)
+            return
+        for joint in chosen:
+            self._move(joint, op)
 
     def state(self) -> tuple[tuple[object, ...], ...]:
         """Return all that the next turn of a loop depends on, as seen from now."""
@@ -78,43 +80,58 @@ class Turning:
         passed_most_ms = min(self._clock.most_ms - joint.begin_most_ms, longest_ms)
         return (id(order), joint.low_centideg, joint.high_centideg, passed_ms, passed_most_ms)
 
-    def _begin(self, trial: JointTrial, joint: int, op: Move | Orient) -> None:
+    def _move(self, joint: int, op: Move) -> None:
+        trial, slew = self.joints[joint], self._profile.servo.slew_centideg_per_s
+        low, high = self._place(trial)
+        way_centideg = max(op.target_centideg - low, high - op.target_centideg)
+        speed = -(-way_centideg * 1000 // op.time_ms)
+        trial.fastest_centideg_per_s = max(trial.fastest_centideg_per_s, speed)
+        if speed > slew:
+            message = f"joint {self._labels[joint]} would turn at {speed / 100:g} deg/s, at most {slew / 100:g} deg/s"
+            help = f"it begins between {low / 100:g} deg and {high / 100:g} deg" if high - low > 1 else ""
+            self._problems.add(_value(op.node, "over"), "E318", message, help)
+        trial.reach(op.target_centideg, op.target_centideg)
+        self._begin(trial, op, low, high)
+
+    def _orient(self, op: Orient, chosen: Sequence[int]) -> None:
+        """Begin an orient, which keeps the grip and swings both joints; a limp one is reported."""
+        limp = [self._labels[joint] for joint in chosen if self.joints[joint].order is None]
+        if limp:
+            help = f"move it first: `move {limp[0]} to 8 deg over 2 s`"
+            self._problems.add(op.node.place, "E320", f"joint {limp[0]} is not held when orient begins", help)
+            return
+        right, left = (self.joints[joint] for joint in chosen)
+        ends = self._place(right), self._place(left)
+        if right.order is not left.order or not isinstance(right.order, Orient):
+            ends = self._swung(op, *ends)
+        for trial, (low, high) in zip((right, left), ends, strict=True):
+            trial.reach(low, high)
+            self._begin(trial, op, low, high)
+
+    def _swung(
+        self, op: Orient, right: tuple[int, int], left: tuple[int, int]
+    ) -> tuple[tuple[int, int], tuple[int, int]]:
+        """Return where an orient may turn two joints that begin between these angles."""
+        limits, servo = self._profile.orient, self._profile.servo
+        assert limits is not None
+        most = limits.swing_max_centideg
+        swing = max(-right[0] - left[0], right[1] + left[1]) / 2
+        if swing > most:
+            message = f"the joints may be swung by {swing / 100:g} deg when orient begins, at most {most / 100:g} deg"
+            self._problems.add(op.node.place, "E321", message)
+        low, high = (right[0] - left[1]) // 2 - most, (right[1] - left[0] + 1) // 2 + most
+        low, high = max(low, servo.least_centideg), min(high, servo.most_centideg)
+        return (low, high), (max(-high, servo.least_centideg), min(-low, servo.most_centideg))
+
+    def _place(self, trial: JointTrial) -> tuple[int, int]:
+        return trial.place(self._clock.now_ms, self._clock.most_ms)
+
+    def _begin(self, trial: JointTrial, op: Move | Orient, low: int, high: int) -> None:
         """Begin a new order on one joint, in place of the one it may have."""
-        low, high = trial.place(self._clock.now_ms, self._clock.most_ms)
-        if isinstance(op, Move):
-            self._check_speed(trial, joint, op, max(op.target_centideg - low, high - op.target_centideg))
-            trial.reach(op.target_centideg, op.target_centideg)
-        else:
-            trial.reach(trial.least_centideg, trial.most_centideg)
         trial.low_centideg, trial.high_centideg = low, high
         trial.begin_ms, trial.begin_most_ms = self._clock.now_ms, self._clock.most_ms
         trial.order = op
         trial.moves += 1
-
-    def _check_speed(self, trial: JointTrial, joint: int, op: Move, way_centideg: int) -> None:
-        speed, most = -(-way_centideg * 1000 // op.time_ms), self._profile.servo.slew_centideg_per_s
-        trial.fastest_centideg_per_s = max(trial.fastest_centideg_per_s, speed)
-        if speed > most:
-            message = f"joint {self._labels[joint]} would turn at {speed / 100:g} deg/s, at most {most / 100:g} deg/s"
-            help = "" if isinstance(trial.order, Move) else "where it begins is not known here: it may be anywhere"
-            self._problems.add(_value(op.node, "over"), "E318", message, help)
-
-    def _ready(self, op: Orient, chosen: Sequence[int]) -> list[int]:
-        """Return the joints that are held; limp ones, and too large a swing, are reported."""
-        limits, held = self._profile.orient, [joint for joint in chosen if self.joints[joint].order]
-        if len(held) < len(chosen):
-            label = self._labels[min(set(chosen) - set(held))]
-            help = f"move it first: `move {label} to 8 deg over 2 s`"
-            self._problems.add(op.node.place, "E320", f"joint {label} is not held when orient begins", help)
-            return held
-        assert limits is not None
-        ends = [self.joints[joint].place(self._clock.now_ms, self._clock.most_ms) for joint in chosen]
-        swing_centideg = max(abs(sum(low for low, _ in ends)), abs(sum(high for _, high in ends))) / 2
-        if swing_centideg > limits.swing_max_centideg:
-            most = f"{limits.swing_max_centideg / 100:g} deg"
-            message = f"the joints may be swung by {swing_centideg / 100:g} deg when orient begins, at most {most}"
-            self._problems.add(op.node.place, "E321", message)
-        return held
 
     def _hold(self, joint: int) -> None:
         """Report a joint that was left alone for too long."""
