@@ -13,7 +13,7 @@ from random import Random
 
 from hil_sim.bench import Bench
 from hil_sim.faults.parts import Mend, Value
-from hil_sim.faults.table import LABEL, Fault, read
+from hil_sim.faults.table import BATTERY, IMU, LABEL, Fault, read
 from hil_sim.journal import FAULT
 
 BEGUN, MENDED = 1, 0  # in the journal
@@ -65,10 +65,16 @@ def schedule(bench: Bench, at_us: int, text: str, for_us: int | None = None, see
 
 def _fits(bench: Bench, fault: Fault, text: str, value: Value) -> None:
     """Raise ValueError when a fault is of something that this bench has not."""
-    labels: Sequence[str] = bench.plant.labels
-    if fault.name.startswith("battery-") and bench.supply.battery is None:
-        raise ValueError(f"fault {text}: this robot has no battery")
-    if fault.name.startswith("imu-") and bench.board.imu is None:
-        raise ValueError(f"fault {text}: this robot has no attitude sensor")
-    if fault.argument == LABEL and value not in labels:
-        raise ValueError(f"fault {text}: name a coil of this robot, as in {fault.name}:{labels[0]}")
+    has = {BATTERY: bench.supply.battery is not None, IMU: bench.board.imu is not None}
+    if fault.of and not has[fault.of]:
+        raise ValueError(f"fault {text}: this robot has no {fault.of}")
+    if fault.argument == LABEL:
+        _names_one(fault, text, value, "coil", bench.plant.labels)
+
+
+def _names_one(fault: Fault, text: str, value: Value, what: str, labels: Sequence[str]) -> None:
+    """Raise ValueError unless the argument is one of the labels."""
+    if not labels:
+        raise ValueError(f"fault {text}: this robot has no {what}s")
+    if value not in labels:
+        raise ValueError(f"fault {text}: name a {what} of this robot, as in {fault.name}:{labels[0]}")

@@ -42,13 +42,14 @@ class Argument:
 
 @dataclass(frozen=True)
 class Fault:
-    """One row of the table. `ends` says whether it lasts and can be mended."""
+    """One row of the table. `ends` says whether it lasts and can be mended, `of` which part of some robots it is."""
 
     name: str
     about: str
     happen: Mishap
     ends: bool = True
     argument: Argument = Argument()
+    of: str = ""
 
     @property
     def spelled(self) -> str:
@@ -58,6 +59,7 @@ class Fault:
         return f"{self.name}:{self.argument.form}" if self.argument.form else self.name
 
 
+BATTERY, IMU = "battery", "attitude sensor"
 LABEL = Argument("LABEL")
 COUNT = Argument("COUNT", 1, 1_000_000)
 PERMILLE = Argument("PERMILLE", 1, 1000)
@@ -79,8 +81,8 @@ TABLE = (
         on_off(parts.monostable_bypassed),
     ),
     Fault("supply-sag", "The coil supply gives so much less.", parts.supply_sag, argument=PERCENT),
-    Fault("battery-empty", "The battery on board is at its end.", once(parts.battery_empty), False),
-    Fault("battery-full", "The battery on board is charged.", once(parts.battery_full), False),
+    Fault("battery-empty", "The battery on board is at its end.", once(parts.battery_empty), False, of=BATTERY),
+    Fault("battery-full", "The battery on board is charged.", once(parts.battery_full), False, of=BATTERY),
     Fault("brown-out", "The board has no supply: chips and processor forget.", on_off(parts.brown_out)),
     Fault("power-cycle", "The board's supply is gone for an instant.", once(parts.power_cycle), False),
     Fault("thermistor-open", "The wire of the thermistor is broken.", on_off(parts.thermistor("open"))),
@@ -100,15 +102,16 @@ TABLE = (
         once(lambda bench: bench.board.monitor.reset()),
         False,
     ),
-    Fault("imu-dead", "The attitude sensor does not answer.", on_off(imu(parts.imu_dead))),
-    Fault("imu-stuck", "The attitude sensor gives its last sample for ever.", on_off(imu(parts.imu_stuck))),
+    Fault("imu-dead", "The attitude sensor does not answer.", on_off(imu(parts.imu_dead)), of=IMU),
+    Fault("imu-stuck", "The attitude sensor gives its last sample for ever.", on_off(imu(parts.imu_stuck)), of=IMU),
     Fault(
         "imu-forgets",
         "The attitude sensor has lost its settings.",
         on_off(imu(lambda chip, _: Lsm6ds3tr.reset(chip))),
         False,
+        of=IMU,
     ),
-    Fault("imu-whole", "The attitude sensor is mended.", on_off(imu(parts.imu_whole)), False),
+    Fault("imu-whole", "The attitude sensor is mended.", on_off(imu(parts.imu_whole)), False, of=IMU),
     Fault("hang", "The firmware is caught in a loop, at once or in a task.", parts.hang, False, TASK),
     Fault("reset", "The processor is reset.", once(lambda bench: bench.world.reset()), False),
     Fault("flash-cut", "Power fails in the so-many-th write to the flash.", parts.flash_cut, argument=COUNT),
