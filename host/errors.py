@@ -116,14 +116,24 @@ class Interrupted(SoftrigError):
     exit_code = 130
 
 
+def amount(value: int, unit: str) -> str:
+    """Return a figure beside a code with its unit; degrees, which go over the wire in hundredths, in degrees."""
+    return f"{_plain(value, unit)} {unit.removeprefix('centi')}"
+
+
 def _told(code: int, value: int, limit: int = 0) -> str:
     """Return `F05 A coil's estimated temperature is above its limit. 1123 0.1 C. Lower duty ...`."""
     row = causes.row(code)
     if row is None:
         return f"code {code}, unknown to this version; update softrig"
-    bound = "at least" if row.number in LOWER_BOUNDS else "at most"
-    figures = f" {value} {row.unit}{f', {bound} {limit}' if limit else ''}." if row.unit else ""
+    bound = "at least" if row.number in LOWER_BOUNDS or limit < 0 else "at most"
+    beyond = f", {bound} {_plain(limit, row.unit)}" if limit else ""
+    figures = f" {amount(value, row.unit)}{beyond}." if row.unit else ""
     return f"{row.name} {_cause(row, value)}{figures} {row.todo}"
+
+
+def _plain(value: int, unit: str) -> str:
+    return f"{value / 100:g}" if unit.startswith("centideg") else str(value)
 
 
 def _cause(row: causes.Code, value: int) -> str:

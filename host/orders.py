@@ -11,7 +11,7 @@ from typing import TypeVar
 from host.answers import Answer
 from host.coils import CoilState
 from host.conversation import Conversation
-from host.errors import NONE, LinkLost, Refused
+from host.errors import NONE, BadRequest, LinkLost, Refused
 from host.kept import Fault, FaultPage, Settings
 from host.profile import Profile
 from host.records import Status
@@ -21,6 +21,7 @@ from protocol import codes, messages
 PIECE = 192  # bytes of code in a message
 PIECES_AHEAD = 4
 WORD_MAX = 0xFFFF
+ANGLE_MAX_CENTIDEG = 0x7FFF
 
 Kind = TypeVar("Kind")
 
@@ -44,16 +45,16 @@ class Orders:
         return _expected(Status, self.talk.order(messages.STATUS_REQUEST), "its status")
 
     def arm(self, lease_ms: int = 0, without: Iterable[str] = ()) -> None:
-        """Have every coil tested, take the lease and allow orders; 0 takes the robot's own lease.
+        """Have every coil and joint tested, take the lease and allow orders; 0 takes the robot's own lease.
 
         The coils and groups of `without` are known to be broken: they are not tested, and never driven.
         """
         _within("arm", codes.LEASE_LIMIT, lease_ms, self.profile.session.lease_max_ms)
-        broken = self.profile.mask(without)
+        broken = self._broken(without)
         self.talk.order(messages.ARM, session=self.talk.session.number, lease_ms=lease_ms, without=broken)
 
     def disarm(self) -> None:
-        """Switch all coils off and return the lease."""
+        """Switch all coils off, let all joints go limp and return the lease."""
         self.talk.order(messages.DISARM)
         self.talk.session.hearing.holds_lease = False
 
@@ -63,10 +64,36 @@ class Orders:
 
     def fire(self, coils: Iterable[str], duty_permille: int, hold_ms: int) -> None:
         """Heat these coils or groups, each for that long."""
-        mask, limits = self.profile.mask(coils), self.profile.coil
+        mask, limits = self.profile.coil_mask(coils), self.profile.coil
         _within("fire", codes.DUTY_LIMIT, duty_permille, limits.duty_max_permille)
         _within("fire", codes.HOLD_LIMIT, hold_ms, limits.hold_max_ms)
         self.talk.order(messages.FIRE, coils=mask, duty_permille=duty_permille, hold_ms=hold_ms)
+
+    def move(self, joints: Iterable[str], target_centideg: int, over_ms: int, hold_ms: int) -> None:
+        """Turn these joints or groups on a straight line, then hold them for that long; then they go limp.
+
+        A joint that is limp sets out from where it is and may take longer: it never turns faster than it may.
+        """
+        mask, limits = self.profile.joint_mask(joints), self.profile.servo
+        _writable("over", over_ms)
+        _within("move", codes.HOLD_LIMIT, hold_ms, limits.hold_max_ms)
+        if abs(target_centideg) > ANGLE_MAX_CENTIDEG:
+            limit = limits.least_centideg if target_centideg < 0 else limits.most_centideg
+            raise Refused("move", codes.RANGE_LIMIT, target_centideg, limit)
+        self.talk.order(messages.MOVE, joints=mask, target_centideg=target_centideg, over_ms=over_ms, hold_ms=hold_ms)
+
+    def orient(self, target_centideg: int, time_ms: int, hold_ms: int) -> None:
+        """Turn the object that both joints hold to an angle, regulated for `time_ms`; then hold it for that long.
+
+        When the camera is lost for too long the loop ends with the event `lost`, and the joints hold.
+        """
+        limits = self.profile.servo
+        _writable("for", time_ms)
+        _within("orient", codes.HOLD_LIMIT, hold_ms, limits.hold_max_ms)
+        if abs(target_centideg) > ANGLE_MAX_CENTIDEG:
+            most_deg = ANGLE_MAX_CENTIDEG / 100
+            raise BadRequest(f"orient to {target_centideg / 100:g} deg: at most {most_deg:g} deg either way")
+        self.talk.order(messages.ORIENT, target_centideg=target_centideg, time_ms=time_ms, hold_ms=hold_ms)
 
     def faults(self) -> list[Fault]:
         """Return the faults that the robot has kept over resets and power cuts, newest first."""
@@ -91,12 +118,12 @@ class Orders:
 
     def change(self, name: str, value: int, coil: str | None = None) -> None:
         """Change a setting, one of SETTING_NAMES, and have the robot keep it."""
-        channel = NONE if coil is None else self.profile.mask([coil]).bit_length() - 1
+        channel = NONE if coil is None else self.profile.coil_mask([coil]).bit_length() - 1
         self.talk.order(messages.SET, setting=messages.SETTING_NAMES.index(name), channel=channel, value=value)
 
     def calibrate(self, without: Iterable[str] = ()) -> None:
         """Have the resistance of every cold coil measured and kept, but for those known to be broken."""
-        broken = self.profile.mask(without)
+        broken = self._broken(without)
         self.talk.order(messages.CALIBRATE, session=self.talk.session.number, without=broken)
 
     def subscribe(
@@ -139,8 +166,16 @@ class Orders:
         self.talk.order(messages.SERVICE)
 
     def cancel(self) -> None:
-        """End the running program; all coils off, still armed."""
+        """End the running program; all coils off, joints hold, still armed."""
         self.talk.order(messages.CANCEL)
+
+    def _broken(self, without: Iterable[str]) -> int:
+        """Return the mask of coils that are known to be broken; BadRequest names a joint, which none can do without."""
+        mask = self.profile.mask(without)
+        for label in self.profile.named(mask):
+            if label in self.profile.joint_labels:
+                raise BadRequest(f"{label} is a joint: only a coil can be left out")
+        return mask
 
 
 def _expected(kind: type[Kind], answer: Answer | None, what: str) -> Kind:
@@ -148,6 +183,12 @@ def _expected(kind: type[Kind], answer: Answer | None, what: str) -> Kind:
     if not isinstance(answer, kind):
         raise LinkLost(f"the robot answered a request for {what} with something else")
     return answer
+
+
+def _writable(what: str, time_ms: int) -> None:
+    """Refuse a time that its message cannot carry."""
+    if time_ms > WORD_MAX:
+        raise BadRequest(f"{what} {time_ms} ms: at most {WORD_MAX} ms in one order")
 
 
 def _within(request: str, code: int, value: int, limit: int) -> None:

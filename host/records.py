@@ -202,6 +202,16 @@ def coil_names(mask: int, labels: tuple[str, ...]) -> tuple[str, ...]:
     return tuple(name for i, name in enumerate(names) if mask >> i & 1)
 
 
+def ended(labels: tuple[str, ...], parts: Parts) -> str:
+    """Return in words what was driven when the stop came: "coils A B were on and are off now"."""
+    joints = [label for label in labels if label in parts.joints]
+    coils = [label for label in labels if label not in parts.joints]
+    if not labels:
+        return "no joint was driven" if parts.joints and not parts.coils else "no coil was on"
+    told = [f"coils {' '.join(coils)} were on and are off now"] if coils else []
+    return " and ".join([*told, *([f"joints {' '.join(joints)} were driven and are limp now"] if joints else [])])
+
+
 def as_json(record: Any) -> dict[str, Any]:
     """Return the record's fields by name, as they stand in logs and on `--json`."""
     return asdict(record)

@@ -1,6 +1,6 @@
 """A robot to give orders to: the blocking face of a session, over any line.
 
-Leaving the `with` block switches every coil off as far as the line allows; leaving it by Ctrl-C sends stop and says
+Leaving the `with` block switches everything off as far as the line allows; leaving it by Ctrl-C sends stop and says
 what the robot acknowledged.
 
     with Robot(open_link("/dev/ttyACM0")) as robot:
@@ -21,7 +21,7 @@ from host.errors import BadRequest, Interrupted, LinkLost, Silent, SoftrigError
 from host.link import Link
 from host.orders import Orders
 from host.outages import Interruption
-from host.records import Event, Record, Stopped, Telemetry, state_name
+from host.records import Event, Record, Stopped, Telemetry, ended, state_name
 from protocol import causes, messages
 
 PATIENCE_MS = 1500  # for the lease of a host that has gone
@@ -118,7 +118,8 @@ class Robot(Orders):
             "state": state_name(identity.state),
             "paired": identity.secured != messages.UNPAIRED,
             "may_arm": not self.talk.session.mute,
-            "coils": list(profile.labels),
+            "coils": list(profile.coil_labels),
+            "joints": list(profile.joint_labels),
         }
 
     def help_texts(self) -> dict[str, str]:
@@ -220,9 +221,9 @@ class Robot(Orders):
             stopped = self.stop()
         except (SoftrigError, KeyboardInterrupt) as error:
             return Interrupted(f"interrupted: stop was sent but not acknowledged ({error})")
-        coils = f"coils {' '.join(stopped.coils)} were on and are off now" if stopped.coils else "no coil was on"
+        hearing = self.talk.session.hearing
         name = causes.row(stopped.code)
         return Interrupted(
-            f"interrupted: stop acknowledged, {coils}; the robot is {stopped.state}"
+            f"interrupted: stop acknowledged, {ended(stopped.coils, hearing.parts)}; the robot is {stopped.state}"
             f"{f' ({name.name})' if name else ''}: `softrig clear` before the next run"
         )

@@ -16,6 +16,7 @@ import pytest
 
 from host.definitions import dictionary_of
 from host.errors import LinkLost
+from host.profile import Parts
 from protocol import frames, messages, variables
 from protocol.link import Link
 
@@ -29,6 +30,7 @@ class FakeRobot:
     """Answers every request with ok, runs a program of `program_ms`, and does what its attributes say."""
 
     def __init__(self, profile: bytes = PROFILE, dictionary: bytes | None = None) -> None:
+        self.parts = _parts_of(profile)
         self.dictionary = dictionary or dictionary_of(profile)
         self.seed = frames.crc32(self.dictionary)
         self.link = Link(self.seed, device=True)
@@ -48,7 +50,9 @@ class FakeRobot:
         self.orders: list[tuple] = []  # (time, name, payload's fields)
         self.code = bytearray()
         self.stops = 0
-        self.duty = [0] * len(LABELS)
+        self.duty = [0] * len(self.parts.coils)
+        self.joints = [FakeJoint() for _ in self.parts.joints]
+        self.object_centideg = 0
         self.period_ms = 0
         self.count = 0  # of telemetry
         self.supply_mv = 2000
@@ -118,25 +122,39 @@ class FakeRobot:
         if message is messages.ARM:
             self.state = messages.ARMED
         elif message is messages.DISARM:
-            self.state, self.duty = messages.IDLE, [0] * len(LABELS)
+            self.state = messages.IDLE
+            self._let_go()
             self.tell(messages.DISARMED, 0, 255, 0, now_ms)
         elif message is messages.SUBSCRIBE:
             self.period_ms = order.period_ms
         elif message is messages.FIRE:
-            for i in range(len(LABELS)):
+            for i in range(len(self.duty)):
                 if order.coils >> i & 1:
                     self.duty[i], self._until[i] = order.duty_permille, now_ms + order.hold_ms
+        elif message in (messages.MOVE, messages.ORIENT):
+            self._turn(message, order, now_ms)
         elif message is messages.CODE:
             self.code += order.code
         elif message is messages.START:
             self.state, self._ends_ms = messages.RUNNING, now_ms + self.program_ms
             self.tell(messages.STARTED, 0, 255, 0, now_ms)
 
+    def _turn(self, message, order, now_ms: int) -> None:
+        if message is messages.ORIENT:
+            self.object_centideg = order.target_centideg
+        for i, joint in enumerate(self.joints):
+            if message is messages.ORIENT:
+                joint.move(joint.commanded_centideg - order.target_centideg, now_ms + order.time_ms, order.hold_ms)
+            elif order.joints >> len(self.duty) + i & 1:
+                joint.move(order.target_centideg, now_ms + order.over_ms, order.hold_ms)
+
     def _go_on(self, now_ms: int) -> None:
         for i, until_ms in list(self._until.items()):
             if now_ms >= until_ms:
                 self.duty[i] = 0
                 del self._until[i]
+        for joint in self.joints:
+            joint.step(now_ms)
         if self._ends_ms is not None and now_ms >= self._ends_ms:
             self._ends_ms = None
             event = self.ending[0]
@@ -149,9 +167,12 @@ class FakeRobot:
     def telemetry(self, late_ms: int = 0) -> None:
         """Send telemetry, or what is that late."""
         degrees = [250 + duty for duty in self.duty]
+        counts = len(self.duty), len(self.joints), self.parts.cameras
         values = variables.veiled(struct.pack(
-            variables.layout(variables.USUAL, len(LABELS)),
+            variables.layout(variables.USUAL, *counts),
             self.state, 0, self.supply_mv, 0, 231, *self.attitude.values(), *self.duty, *degrees,
+            *[joint.centideg for joint in self.joints], *[joint.commanded_centideg for joint in self.joints],
+            *[joint.ma for joint in self.joints], *[self.object_centideg] * self.parts.cameras,
         ))  # fmt: skip
         now_ms = (self.uptime_ms - late_ms) & 0xFFFFFFFF
         self._post(messages.TELEMETRY, slot=0, form=0, count=self.count, now_ms=now_ms, values=values)
@@ -170,22 +191,67 @@ class FakeRobot:
     def _status(self, seq: int, now_ms: int) -> None:
         self._send(
             messages.STATUS, now_ms, request=seq, state=self.state, code=0, uptime_ms=self.uptime_ms, lease_ms=0,
-            step=0, coils=0, supply_mv=self.supply_mv, current_ma=12, board_decidegc=231, dropped=0, forged=0,
-            repeated=0, overruns=0,
-            **self.attitude,
+            step=0, coils=self._driven(), supply_mv=self.supply_mv, current_ma=12, board_decidegc=231, dropped=0,
+            forged=0, repeated=0, overruns=0, **self.attitude,
         )  # fmt: skip
 
     def _stopped(self, now_ms: int) -> None:
-        on = sum(1 << i for i, duty in enumerate(self.duty) if duty)
+        driven = self._driven()
         self.stops += 1
-        self.state, self.duty, self._ends_ms = messages.TRIPPED, [0] * len(LABELS), None
-        self._post(messages.STOPPED, state=self.state, code=101, coils=on, now_ms=self.uptime_ms)
+        self.state, self._ends_ms = messages.TRIPPED, None
+        self._let_go()
+        self._post(messages.STOPPED, state=self.state, code=101, coils=driven, now_ms=self.uptime_ms)
+
+    def _driven(self) -> int:
+        """Return the mask of the channels that are driven."""
+        driven = [duty > 0 for duty in self.duty] + [joint.driven for joint in self.joints]
+        return sum(1 << i for i, each in enumerate(driven) if each)
+
+    def _let_go(self) -> None:
+        """Switch every coil off and let every joint go limp."""
+        self.duty = [0] * len(self.duty)
+        for joint in self.joints:
+            joint.commanded_centideg = variables.UNKNOWN_ANGLE
 
     def _send(self, message, now_ms: int, **values) -> None:
         self.link.send(message.number, message.pack(**values), now_ms)
 
     def _post(self, message, **values) -> None:
         self.link.post(message.number, message.pack(**values))
+
+
+def _parts_of(profile: bytes) -> Parts:
+    """Return the parts that a profile names, also one that is not good enough for a host."""
+    data = json.loads(profile)
+    labels = [tuple(row["label"] for row in data["channels"] if row["kind"] == kind) for kind in ("sma", "servo")]
+    return Parts(labels[0] + labels[1], *labels, int("camera" in data))
+
+
+class FakeJoint:
+    """A joint that stands where it was told to go as soon as its time is over."""
+
+    def __init__(self) -> None:
+        self.centideg = 0
+        self.commanded_centideg = variables.UNKNOWN_ANGLE
+        self.ma = 120  # while it is driven it takes ten times as much
+        self._arrives_ms = self._ends_ms = 0
+
+    @property
+    def driven(self) -> bool:
+        """Return whether it has pulses."""
+        return self.commanded_centideg != variables.UNKNOWN_ANGLE
+
+    def move(self, target_centideg: int, arrives_ms: int, hold_ms: int) -> None:
+        """Go there, and go limp that long after."""
+        self.commanded_centideg, self.ma = target_centideg, 1200
+        self._arrives_ms, self._ends_ms = arrives_ms, arrives_ms + hold_ms
+
+    def step(self, now_ms: int) -> None:
+        """Arrive, or go limp, when it is time."""
+        if self.driven and now_ms >= self._arrives_ms:
+            self.centideg = self.commanded_centideg
+        if self.driven and now_ms >= self._ends_ms:
+            self.commanded_centideg, self.ma = variables.UNKNOWN_ANGLE, 120
 
 
 def plug_in(line: object, monkeypatch: pytest.MonkeyPatch) -> None:
