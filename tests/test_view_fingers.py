@@ -11,7 +11,7 @@ from host.errors import BadRequest
 from host.view import draw_film, draw_grasp, draw_grips, draw_nail, draw_run, draw_tilting
 from host.view.hand import push, tip_outline
 from host.view.nail import centre_line_deg, normalised_moment
-from host.view.swings import gripping, object_deg, of_fingers, phase_names, phases, swing_deg, telling
+from host.view.swings import held, object_deg, of_fingers, phase_names, phases, swing_deg, telling
 from host.view.tilting import sequence
 from tests.pinched_plate import EXPERIMENT, PinchedPlate, recorded_pinch
 from tests.rolling_ring import recorded_run
@@ -66,6 +66,12 @@ def test_the_forces_that_are_drawn_hold_the_object_in_balance(pinch):
         assert leftward == pytest.approx(-rightward, rel=1e-6)
         between = right - left
         assert between[0] * leftward[1] - between[1] * leftward[0] == pytest.approx(0.0, abs=1e-2)  # N mm
+
+
+def test_a_rest_in_parallel_belongs_to_phase_0():
+    resting = recorded_pinch(((0.5, 0.0, 0.0), (1.0, 0.0, 8.0), (1.0, 20.0, 8.0)))
+
+    assert phases(resting)[:2] == [10, 30]
 
 
 def test_the_phases_end_parallel_gripping_and_at_the_end_of_each_rest(pinch):
@@ -142,10 +148,17 @@ def test_the_moment_of_a_tip_is_that_of_the_closed_form_with_a_nail_and_none_wit
 
 def test_without_a_nail_the_object_follows_the_line_of_the_tips():
     radial = recorded_pinch(tip="radial")
-    held = slice(gripping(radial), None)
+    shown = held(radial)
 
-    assert object_deg(radial)[held] == pytest.approx(centre_line_deg(radial)[held], abs=1e-3)
-    assert of_fingers(radial, "d_mm")[held, 0] == pytest.approx(of_fingers(radial, "d_mm")[held, 1], abs=1e-4)
+    right, left = of_fingers(radial, "d_mm")[shown].T
+    assert object_deg(radial)[shown] == pytest.approx(centre_line_deg(radial)[shown], abs=1e-3)
+    assert right == pytest.approx(left, abs=1e-4)
+
+
+def test_what_comes_after_the_grip_opens_is_not_shown_as_held():
+    opened = recorded_pinch(((1.0, 0.0, 8.0), (1.0, 20.0, 8.0), (1.0, 0.0, 8.0), (1.0, 0.0, 0.0)))
+
+    assert [held(opened)[i] for i in (0, -1)] == [20, 60]
 
 
 def test_the_nail_is_shown_by_two_runs(pinch, tmp_path):

@@ -16,7 +16,7 @@ from host.view.energy import energies_mj
 from host.view.instants import Numbers
 from host.view.sheet import BOTTOM_MM, GAP_MM, LEFT_MM, NAME_MM, RIGHT_MM, TOP_MM, Sheet
 from host.view.style import COILS, INK, PAGE_MM, Style
-from host.view.swings import grip_deg, gripping, object_deg, of_fingers, swing_deg
+from host.view.swings import grip_deg, gripping, held, object_deg, of_fingers, parallel, swing_deg
 
 PANEL_MM, BETWEEN_MM = 46.0, 16.0
 PRESSED = 0.2  # of the greatest displacement: below, a moment by its cube is mostly rounding
@@ -87,12 +87,12 @@ def draw_moment(axes: Axes, runs: dict[str, Recording]) -> None:
 def draw_turns(axes: Axes, runs: dict[str, Recording]) -> None:
     """Draw the object's angle over the swing, with the line of the tips' centres."""
     for name, colour, _ in KINDS:
-        held = slice(gripping(runs[name]), None)
-        swing = swing_deg(runs[name])[held]
-        axes.plot(swing, object_deg(runs[name])[held], color=colour, lw=1.2, label=NAMES[name])
+        shown = held(runs[name])
+        swing = swing_deg(runs[name])[shown]
+        axes.plot(swing, object_deg(runs[name])[shown], color=colour, lw=1.2, label=NAMES[name])
         if name == "radial":
             order = np.argsort(swing)
-            line = centre_line_deg(runs[name])[held][order]
+            line = centre_line_deg(runs[name])[shown][order]
             axes.plot(swing[order], line, color=INK, lw=0.6, ls=(0, (5, 3)), label="line of the tips' centres")
     axes.set_xlabel("swing of both fingers [°]", labelpad=1)
     axes.set_ylabel("object [°]", labelpad=2)
@@ -102,7 +102,7 @@ def draw_turns(axes: Axes, runs: dict[str, Recording]) -> None:
 def draw_stiffness(axes: Axes, runs: dict[str, Recording]) -> None:
     """Draw the rotational stiffness of the held object over the grip, until the fingers swing."""
     for name, colour, _ in KINDS:
-        closing = slice(0, gripping(runs[name]) + 1)
+        closing = slice(parallel(runs[name]), gripping(runs[name]) + 1)
         stiffness = [scene["stiffness_nmm_per_rad"] for scene in runs[name].scenes[closing]]
         axes.plot(grip_deg(runs[name])[closing], np.array(stiffness) / 1000, color=colour, lw=1.2, label=NAMES[name])
         last = float(grip_deg(runs[name])[closing][-1]), stiffness[-1] / 1000
@@ -116,9 +116,9 @@ def draw_stiffness(axes: Axes, runs: dict[str, Recording]) -> None:
 def draw_energy(axes: Axes, runs: dict[str, Recording]) -> None:
     """Draw the elastic energy over the swing, by that of the grip."""
     for name, colour, _ in KINDS:
-        grip = gripping(runs[name])
-        energy = energies_mj(runs[name], "elastic")[grip:]
-        axes.plot(swing_deg(runs[name])[grip:], energy / energy[0], color=colour, lw=1.2, label=NAMES[name])
+        shown = held(runs[name])
+        energy = energies_mj(runs[name], "elastic")[shown]
+        axes.plot(swing_deg(runs[name])[shown], energy / energy[0], color=colour, lw=1.2, label=NAMES[name])
     axes.set_xlabel("swing of both fingers [°]", labelpad=1)
     axes.set_ylabel("energy, of that of the grip", labelpad=2)
     axes.legend(loc="lower center", **LEGEND)

@@ -63,6 +63,20 @@ def turning(recording: Recording) -> list[int]:
     return [_rest(swing, i, until, STILL * greatest) for i, until in ends if abs(swing[i]) > BACK * greatest]
 
 
+def parallel(recording: Recording) -> int:
+    """Return the last scene before the fingers close."""
+    grip = grip_deg(recording)
+    closed = np.flatnonzero(grip > STILL * float(grip.max()))
+    return max(0, int(closed[0]) - 1) if len(closed) else 0
+
+
+def held(recording: Recording) -> Numbers:
+    """Return the scenes from the first swing on in which the fingers keep their grip; BadRequest without a swing."""
+    grip, begin = grip_deg(recording), gripping(recording)
+    kept = np.flatnonzero(np.abs(grip - grip[begin]) < STILL * abs(grip[begin]))
+    return kept[kept >= begin]
+
+
 def gripping(recording: Recording) -> int:
     """Return the last scene before the fingers first swing together; BadRequest when they never do."""
     swing = swing_deg(recording)
@@ -72,7 +86,7 @@ def gripping(recording: Recording) -> int:
 
 def phases(recording: Recording) -> list[int]:
     """Return the scenes that end the paper's phases: parallel, gripping, and each swing."""
-    return [0, gripping(recording), *turning(recording)]
+    return [parallel(recording), gripping(recording), *turning(recording)]
 
 
 def phase_names(recording: Recording) -> list[str]:
@@ -85,7 +99,16 @@ def telling(recording: Recording, count: int) -> list[int]:
     """Return at most so many scenes that tell a run: the ends of its phases, or evenly when the fingers never swung."""
     if np.abs(swing_deg(recording)).max() < LEAST_DEG:
         return spread(recording, count)
-    return sorted({*phases(recording)[: count - 1], len(recording.scenes) - 1})
+    return filled(sorted({*phases(recording)[: count - 1], len(recording.scenes) - 1}), count)
+
+
+def filled(chosen: list[int], count: int) -> list[int]:
+    """Return so many scenes: these, and ones halfway in the widest gaps between them, the first gap left as it is."""
+    scenes = list(chosen)
+    while len(scenes) < count and (gaps := np.diff(scenes[1:])).size and gaps.max() > 1:
+        widest = int(gaps.argmax()) + 1
+        scenes.insert(widest + 1, (scenes[widest] + scenes[widest + 1]) // 2)
+    return scenes
 
 
 def spread(recording: Recording, count: int) -> list[int]:

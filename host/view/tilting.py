@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from string import ascii_lowercase
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
@@ -21,7 +20,7 @@ from host.view.hand import OBJECT, draw_hand, draw_turn, room
 from host.view.instants import scene_times
 from host.view.sheet import BOTTOM_MM, GAP_MM, LEFT_MM, NAME_MM, RIGHT_MM, TOP_MM, Sheet
 from host.view.style import FAINT, INK, PAGE_MM, Style
-from host.view.swings import object_deg, phases, swing_deg
+from host.view.swings import filled, object_deg, phases, swing_deg
 
 FRAMES, ROW = 8, 4
 EDGE_MM, HEAD_MM, WORDS_MM, LINE_MM = 8.0, 18.0, 9.0, 3.4
@@ -46,11 +45,7 @@ def tilting_figure(recording: Recording) -> Figure:
 
 def sequence(recording: Recording) -> list[int]:
     """Return the scenes of (a) to (h)."""
-    chosen = phases(recording)[:FRAMES]
-    while len(chosen) < FRAMES and max(np.diff(chosen)) > 1:
-        widest = int(np.argmax(np.diff(chosen[1:]))) + 1
-        chosen.insert(widest + 1, (chosen[widest] + chosen[widest + 1]) // 2)
-    return chosen
+    return filled(phases(recording)[:FRAMES], FRAMES)
 
 
 def frame_height(recording: Recording, shown: Sequence[int]) -> float:
