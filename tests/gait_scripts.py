@@ -34,6 +34,13 @@ ROUND = {
     "program": {"bytes_max": 1024, "depth_max": 8, "guards_max": 8},
 }  # fmt: skip
 
+JOINTS = [{"label": label, "kind": "servo", "pin": 8 + i, "current": i, "angle": 2 + i} for i, label in enumerate("RL")]
+SERVO = {
+    "least_centideg": -3000, "most_centideg": 3000, "slew_centideg_per_s": 10000, "hold_max_ms": 5000,
+    "stall_ma": 2400, "stall_ms": 300, "pulse_hz": 200, "low_us": 500, "high_us": 2500, "span_centideg": 18000,
+    "ua_per_count": 1611, "low_counts": 410, "high_counts": 3686,
+}  # fmt: skip
+
 
 def round_robot(**coil):
     """Return a profile with round numbers: 200 mA and 380 mW at full duty; `coil` changes limits of its coils."""
@@ -50,6 +57,26 @@ def ball(**coil):
     channels = [{**row, "label": label} for row, label in zip(ROUND["channels"], BALL, strict=True)]
     limits = {**ROUND["coil"], **coil}
     return {**ROUND, "channels": channels, "groups": [["low", "A00m1 A10m1"]], "coil": limits, "imu": {"address": 106}}
+
+
+def hand(**servo):
+    """Return the profile of `hand_robot` as it stands in the firmware."""
+    rest = {name: ROUND[name] for name in ROUND if name != "coil"}
+    sees = {"camera": {"address": 51, "stale_ms": 100}}
+    turns = {"orient": {"gain_permille_per_s": 5000, "swing_max_centideg": 2000}}
+    return {**rest, "channels": JOINTS, "groups": [["both", "R L"]], "servo": {**SERVO, **servo}, **sees, **turns}
+
+
+def hand_robot(**servo):
+    """Return a robot of two joints and no coil: 30 deg to either side, 100 deg/s, 5 s of hold; it has a camera."""
+    return read_profile(json.dumps(hand(**servo)).encode())
+
+
+def mixed_robot():
+    """Return a robot with two coils and two joints, and no camera."""
+    rows = [*ROUND["channels"][:2], *JOINTS]
+    groups = [["front", "A B"], ["odd", "A R"]]
+    return read_profile(json.dumps({**ROUND, "channels": rows, "groups": groups, "servo": SERVO}).encode())
 
 
 def circular():

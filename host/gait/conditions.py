@@ -99,7 +99,7 @@ def _subject(node: tree.Condition, scope: Scope) -> tuple[Mapping[str, Source], 
     labels = profile.joint_labels if of_joints else profile.coil_labels
     named = _channels(node, scope, profile.mask(labels))
     if named is not None and named[0] != program.CHOSEN:
-        others = profile.named(named[1] & ~profile.mask(labels))
+        others = profile.named((named[1] or -1) & ~profile.mask(labels))
         if others and quantity in JOINT | COIL:
             _misplaced(node, others[0], scope)
             return {}, None
