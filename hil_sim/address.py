@@ -11,6 +11,7 @@ from math import isfinite
 from urllib.parse import unquote
 
 from hil_sim.robotcheck import near
+from hil_sim.robottexts import CHOICES
 
 SHORT = {
     "slope": "ground.slope_deg",
@@ -18,7 +19,8 @@ SHORT = {
     "mu": "ground.friction_ratio",
     "supply": "wiring.supply_v",
 }
-OPTIONS = (*SHORT, "seed", "set", "open", "world", "baud", "body", "faults", "node", "key")
+CHOSEN = {name.partition(".")[2]: name for name in CHOICES}
+OPTIONS = (*SHORT, *CHOSEN, "seed", "set", "open", "world", "baud", "body", "faults", "node", "key")
 WORLDS = ("cpython", "micropython")
 BODIES = ("moving", "still")
 BAUD_MAX = 4_000_000
@@ -68,6 +70,8 @@ def parse(text: str) -> Address:
 def _take(address: Address, name: str, value: str) -> None:
     if name in SHORT:
         address.overrides[SHORT[name]] = _number(name, value)
+    elif name in CHOSEN:
+        address.overrides[CHOSEN[name]] = _one_of(name, value, CHOICES[CHOSEN[name]])
     elif name == "set":
         key, colon, number = value.partition(":")
         if not colon:

@@ -12,10 +12,12 @@ from hil_sim.devices.ntc import Ntc
 from hil_sim.faults.file import load as load_faults
 from hil_sim.faults.file import plan
 from hil_sim.faults.happening import schedule
+from hil_sim.fingers import FingersPlant
+from hil_sim.physics.hand.fingertip import HandError
 from hil_sim.plant import RingPlant
 from hil_sim.robotcheck import near
 from hil_sim.robotfile import RobotFile, RobotFileError, load
-from hil_sim.robotkeys import RING
+from hil_sim.robotkeys import FINGERS, RING
 from hil_sim.soundness import CameApart
 from hil_sim.sphere import SpherePlant
 from hil_sim.still import still
@@ -39,7 +41,8 @@ def assemble(address: Address, clock: Clock | None = None, can_wire: CanWire | N
     robot = load(address.robot, address.overrides)
     for label in address.open:
         if label not in robot.labels:
-            raise RobotFileError(f"open={label}: {robot.name} has no such coil{near(label, robot.labels)}")
+            what = f"such coil{near(label, robot.labels)}" if robot.labels else "coils"
+            raise RobotFileError(f"open={label}: {robot.name} has no {what}")
     profile = robot.profile.read_bytes()
     _agree(robot, profile)
     image = Image.installed(profile)
@@ -49,7 +52,7 @@ def assemble(address: Address, clock: Clock | None = None, can_wire: CanWire | N
     try:
         plant = plant_of(robot, address.seed, address.body)
         bench = Bench(parts_of(robot), plant, image, execute, **wired)
-    except (ArithmeticError, CameApart) as error:
+    except (ArithmeticError, CameApart, HandError) as error:
         raise RobotFileError(f"{robot.name} cannot be built from these numbers: {error}") from error
     if address.node:
         for path, data in preset.number(image, address.node).items():
@@ -64,6 +67,10 @@ def assemble(address: Address, clock: Clock | None = None, can_wire: CanWire | N
 
 def plant_of(robot: RobotFile, seed: int, body: str = BODIES[0]) -> Plant:
     """Return the body of a robot; the seed makes its terrain. A "still" one keeps the shape in which it rests."""
+    if robot.kind == FINGERS:
+        if body != BODIES[0]:
+            raise RobotFileError(f"body={body}: {robot.name} has no coils to heat while it does not move")
+        return FingersPlant(robot)
     plant = RingPlant(robot, seed) if robot.kind == RING else SpherePlant(robot, seed)
     return plant if body == BODIES[0] else still(plant)
 
@@ -86,20 +93,27 @@ def _key_file(path: str) -> bytes:
 
 
 def _agree(robot: RobotFile, profile: bytes) -> None:
-    """Raise RobotFileError unless the firmware's profile names the same coils on the same outputs."""
+    """Raise RobotFileError unless the firmware's profile names the same coils and servos in the same places."""
     try:
-        rows = [(row["label"], (row["chip"], row["output"])) for row in json.loads(profile)["channels"]]
+        rows = [(row["label"], _place(row)) for row in json.loads(profile)["channels"]]
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise RobotFileError(f"{robot.profile}: no profile of a robot ({error!r})") from None
-    wired = [(label, robot.wiring.outputs[label]) for label in robot.labels]
+    wiring = robot.wiring
+    wired: list[tuple[str, tuple[Any, ...]]] = [(label, wiring.outputs[label]) for label in robot.labels]
+    wired += [(label, (wiring.pins[label],)) for label in robot.joints]
     if rows != wired:
         odd = [label for label, _ in dict.fromkeys([row for row in [*wired, *rows] if (row in wired) != (row in rows)])]
         which = " ".join(dict.fromkeys(odd)) or "their order"
         raise RobotFileError(f"{robot.name} and its profile {robot.profile} differ in labels or outputs: {which}")
 
 
+def _place(row: dict[str, Any]) -> tuple[Any, ...]:
+    """Return chip and output of a coil of the profile, or the pin of a servo."""
+    return (row["pin"],) if row["kind"] == "servo" else (row["chip"], row["output"])
+
+
 def parts_of(robot: RobotFile) -> Parts:
-    """Return the electrical side of a robot in the order of its coils."""
+    """Return the electrical side of a robot in the order of its coils and joints."""
     wiring, sensors = robot.wiring, robot.sensors
     return Parts(
         outputs=[wiring.outputs[label] for label in robot.labels],
@@ -108,7 +122,10 @@ def parts_of(robot: RobotFile) -> Parts:
         shunt_ohm=sensors.shunt_ohm,
         supply_v=wiring.supply_v,
         battery=Battery(robot.battery) if robot.battery else None,
-        ambient_degc=robot.ground.T_amb,
+        ambient_degc=robot.ambient_degc,
         ntc=Ntc(sensors.ntc_ohm, sensors.ntc_beta_k, sensors.ntc_pull_up_ohm),
         imu=sensors.imu > 0,
+        servos=[wiring.pins[label] for label in robot.joints],
+        servo_dead_band_us=wiring.dead_band_us,
+        camera=robot.camera,
     )

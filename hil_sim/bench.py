@@ -1,7 +1,8 @@
 """The bench: core board, body and firmware in lock-step on one clock.
 
 The body is advanced on a fixed grid of 5 ms and whenever a gate changes, so what happens does not depend on who looks,
-how often, or how fast. The bench moves bytes and switches coils; it can read neither messages nor coil orders.
+how often, or how fast. The bench moves bytes, switches coils and passes pulses on; it can read neither messages nor
+coil orders. Where the pulses of a servo send it at a point of the grid, it goes until the next.
 
     bench = Bench(parts, plant, image)
     bench.run(seconds=2)
@@ -20,12 +21,15 @@ from numpy.typing import NDArray
 
 from hil_sim.board import Board
 from hil_sim.clock import Clock
+from hil_sim.devices.anglecamera import Optics
 from hil_sim.devices.canwire import CanWire
 from hil_sim.devices.flash import Flash
 from hil_sim.devices.lsm6ds3tr import Motion
 from hil_sim.devices.ntc import Ntc
+from hil_sim.devices.servo import DEAD_BAND_US
+from hil_sim.joints import Jointed, Joints
 from hil_sim.journal import Journal
-from hil_sim.record import CoilRecord
+from hil_sim.record import CoilRecord, JointRecord
 from hil_sim.soundness import EVERY_US, Soundness
 from hil_sim.supply import Battery, Supply
 from hil_sim.worlds import cpython
@@ -37,7 +41,7 @@ FloatArray = NDArray[np.float64]
 
 
 class Plant(Protocol):
-    """The body: coils and what they move."""
+    """The body: coils and what they move. One with joints is `Jointed`, too."""
 
     @property
     def labels(self) -> Sequence[str]:
@@ -63,7 +67,7 @@ class Plant(Protocol):
 
 @dataclass(frozen=True)
 class Parts:
-    """The electrical parts around the chips, in the order of the plant's coils."""
+    """The electrical parts around the chips, in the order of the plant's coils and joints."""
 
     outputs: Sequence[tuple[int, int]]  # PWM chip and output of each coil
     series_ohm: Sequence[float]  # wiring and switch of each coil
@@ -74,6 +78,9 @@ class Parts:
     ambient_degc: float = 25.0
     ntc: Ntc | None = None
     imu: bool = False  # an attitude sensor rides on the core, if the plant says how that moves
+    servos: Sequence[int] = ()  # the processor's pin of each joint
+    servo_dead_band_us: float = DEAD_BAND_US
+    camera: Optics | None = None  # looks at the object, if the plant has one
 
 
 class Bench:
@@ -102,11 +109,15 @@ class Bench:
         self.supply = Supply(series_ohm, parts.source_ohm, parts.shunt_ohm, parts.supply_v, parts.battery)
         motion = plant if parts.imu and isinstance(plant, Motion) else None
         ntc = parts.ntc or Ntc()
-        self.board = Board(self.clock, self.journal, self.supply, parts.outputs, ntc, baud, identity, motion, can_wire)
+        self.board = Board(
+            self.clock, self.journal, self.supply, parts.outputs, ntc, baud, identity, motion, can_wire, parts.camera,
+            parts.servo_dead_band_us,
+        )  # fmt: skip
         self.board.flash = Flash({path: image.read(path) for path in image.paths()})
         self.board.degc = parts.ambient_degc
         self.board.changed = self._gates_changed
         self.coils = [CoilRecord(label) for label in plant.labels]
+        self._joints = Joints(plant, self.board, parts.servos) if isinstance(plant, Jointed) else None
         self.world = World(self.board, image, execute, ticks_start_us)
         self._by_label = {coil.label: coil for coil in self.coils}
         self._began_us = self._advanced_us = self.clock.now_us
@@ -135,6 +146,15 @@ class Bench:
         record.energy_j = float(self._energy_j[index])
         return record
 
+    @property
+    def joints(self) -> list[JointRecord]:
+        """Return what was done to each joint, as of the last grid point or change."""
+        return self._joints.records if self._joints else []
+
+    def joint(self, label: str) -> JointRecord:
+        """Return what was done to a joint."""
+        return next(joint for joint in self.joints if joint.label == label)
+
     def break_coil(self, label: str, broken: bool = True) -> None:
         """Open the wire of a coil, or mend it."""
         self.supply.break_coil(self.coils.index(self._by_label[label]), broken)
@@ -146,6 +166,11 @@ class Bench:
         return self._hot
 
     @property
+    def any_joint_driven(self) -> bool:
+        """Whether any joint is told to go anywhere: it is limp else."""
+        return any(joint.deg is not None for joint in self.joints)
+
+    @property
     def crashes(self) -> list[Crash]:
         """What has escaped the firmware."""
         return self.world.crashes
@@ -155,13 +180,15 @@ class Bench:
         return self.journal.trace_sha256()
 
     def observe(self) -> dict[str, Any]:
-        """Return what a motion capture system would see, and what was done to each coil."""
+        """Return what a motion capture system would see, and what was done to each coil and joint."""
         now_us = self.clock.now_us
         coils = {coil.label: self.coil(coil.label) for coil in self.coils}
+        driven_s = {joint.label: joint.driven_us(now_us) / 1e6 for joint in self.joints}
         battery = self.supply.battery
         return {
             **self.plant.observe(),
             **({"battery_percent": 100.0 * battery.charge} if battery else {}),
+            **({"joint_driven_s": driven_s} if driven_s else {}),
             "t_s": now_us / 1e6,
             "coil_on_s": {label: coil.on_us(now_us) / 1e6 for label, coil in coils.items()},
             "coil_energy_j": {label: coil.energy_j for label, coil in coils.items()},
@@ -199,7 +226,9 @@ class Bench:
 
     def _grid(self) -> None:
         self._advance()
-        if self._hot or self.supply.stale:  # resistances have changed, or the source
+        if self._joints is not None:
+            self._joints.look(self.clock.now_us)
+        if self._hot or self.supply.stale:  # resistances have changed, or the source, or the load
             self.board.monitor.before_change()
             self.supply.solve(self.plant.resistance)
             self.board.monitor.after_change()
@@ -214,6 +243,8 @@ class Bench:
     def _gates_changed(self) -> None:
         self._advance()
         self.board.monitor.before_change()
+        if self._joints is not None:
+            self._take_up(self._joints)
         gates = self.board.gates()
         self.supply.drive(gates, self.board.pwm_period_us())
         self.supply.solve(self.plant.resistance)
@@ -231,7 +262,14 @@ class Bench:
         if self.board.imu is not None:
             self.board.imu.before_change()
         self.plant.advance(duration_us, self.supply.power_w)
+        if self._joints is not None:
+            self._take_up(self._joints)
         self.supply.spend(duration_us)
         if self._hot:
             self._energy_j += self.supply.power_w * (duration_us * 1e-6)
             np.maximum(self._peak_degc, self.plant.temperature, out=self._peak_degc)
+
+    def _take_up(self, joints: Joints) -> None:
+        """Have the servos go where the pulses say from now on, and take their current from the rail."""
+        joints.drive(self.clock.now_us)
+        self.supply.load_a = joints.load_a

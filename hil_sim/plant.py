@@ -43,6 +43,8 @@ class RingPlant(CoilBody):
         numbers, start = robot.ring, robot.start
         if numbers is None or not isinstance(start, StartNumbers):
             raise ValueError(f"{robot.name} is no ring but a {robot.kind}")
+        assert robot.ground is not None
+        assert robot.coil is not None
         ground, count = robot.ground, len(robot.labels)
         super().__init__(robot.labels, ground)
         self._ring = ring_of(numbers, ground, count, seed)

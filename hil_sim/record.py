@@ -1,4 +1,4 @@
-"""What was done to one coil, for tests and reports: when it was on, how long, how hot, with how much energy."""
+"""What was done to one coil or joint, for tests and reports: when it was on or driven, how long, how hot, how far."""
 
 from dataclasses import dataclass, field
 
@@ -32,3 +32,33 @@ class CoilRecord:
         """Return how long it has been on in all, at whatever duty."""
         running_us = now_us - self.on_at_us if self.duty and self.on_at_us is not None else 0
         return self._on_us + running_us
+
+
+@dataclass
+class JointRecord:
+    """One joint's history. `deg` is where its servo is told to go: None while it is limp."""
+
+    label: str
+    deg: float | None = None
+    history: list[tuple[int, float | None]] = field(default_factory=list)  # time_us, command from then on
+    driven_at_us: int | None = None  # last time it was driven after it had been limp
+    limp_at_us: int | None = None  # last time it was let go
+    peak_a: float = 0.0
+    _driven_us: int = 0
+
+    def command(self, deg: float | None, now_us: int) -> None:
+        """Note a new command."""
+        if deg == self.deg:
+            return
+        if self.deg is None:
+            self.driven_at_us = now_us
+        elif deg is None:
+            self._driven_us = self.driven_us(now_us)
+            self.limp_at_us = now_us
+        self.deg = deg
+        self.history.append((now_us, deg))
+
+    def driven_us(self, now_us: int) -> int:
+        """Return how long it has been driven in all."""
+        running_us = now_us - self.driven_at_us if self.deg is not None and self.driven_at_us is not None else 0
+        return self._driven_us + running_us

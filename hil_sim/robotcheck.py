@@ -7,13 +7,19 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from hil_sim.robotkeys import BATTERY, BENCH, KEYS, KINDS, UNITS, Key, keys_of
-from hil_sim.robottexts import TEXTS, is_text, mistakes_in
+from hil_sim.robotkeys import BATTERY, BENCH, KEYS, KINDS, UNITS, Key, features_of, keys_of
+from hil_sim.robottexts import CHOICES, TEXTS, Sections, Text, mistakes_in, texts_of
 
 STANDINGS = ("paper", "read", "derived", "assumed", "fitted")
 FOR_THE_READER = ("derived",)  # a section that is held to the form but not to the table of keys
 INSIDE = ("hub.radius_mm", "hub.attach_mm", "core.radius_mm", "core.attach_mm")  # the shell
 RISING = ("martensite_finish", "martensite_start", "austenite_start", "austenite_finish")
+NEEDS = (  # a choice, the words of it that need one of some numbers, and why
+    ("fingers.contact", ("stick", "coulomb"), ("object.width_mm",), "two tips on one line are over-constrained"),
+    ("fingers.motion", ("dynamic",), ("object.mass_g",), "what has no mass is moved by no dynamics"),
+    ("fingers.motion", ("dynamic",), ("object.width_mm", "object.height_mm"), "without extent it has no inertia"),
+)
+ALSO = {"ground.friction_ratio": "object.friction_ratio"}  # by which name a robot without ground has the same
 FROM_ADDRESS = "set by the robot's address"
 
 
@@ -30,7 +36,7 @@ class Entry:
 class Check:
     """The numbers of a robot file in `entries`, and in `mistakes` one line for each thing wrong with it.
 
-    `rows` are the keys that such a robot has.
+    `kind` is that of the robot, `rows` are the keys that it has, `choices` the texts that an address may set.
     """
 
     def __init__(self, path: Path, text: str, data: dict[str, Any], overrides: Mapping[str, str]) -> None:
@@ -41,15 +47,20 @@ class Check:
         self._meant: set[str] = set()  # keys that the file tried to give
         sections = {"": {key: value for key, value in data.items() if not isinstance(value, dict)}}
         sections |= {key: value for key, value in data.items() if isinstance(value, dict)}
-        kind = kind_of(sections)
-        self.rows = keys_of(kind, BATTERY if "battery" in sections else BENCH)
+        power = BATTERY if "battery" in sections else BENCH
+        self.kind = kind_of(sections)
+        self.rows = keys_of(self.kind, power)
+        self._texts = texts_of(features_of(self.kind, power))
+        self._all: list[Key | Text] = [*self.rows, *self._texts]
+        self.choices = {text.name: given(sections, text.name) for text in self._texts if text.name in CHOICES}
         self._sections(sections)
         self._missing()
-        for name, what in mistakes_in(sections, kind):
+        for name, what in mistakes_in(sections, features_of(self.kind, power)):
             self._say(name, what)
         for name, value in overrides.items():
             self._override(name, value)
         self._ranges()
+        self._constraints(overrides)
 
     def _say(self, name: str, what: str) -> None:
         """Note a mistake at the line of section.key, else of its section, else of the file."""
@@ -58,7 +69,8 @@ class Check:
         self.mistakes.append(f"{self._path}:{line}: {what}")
 
     def _sections(self, sections: dict[str, dict[str, Any]]) -> None:
-        known = {key.section for key in self.rows} | set(TEXTS) | set(FOR_THE_READER)
+        known = {row.section for row in self._all} | set(FOR_THE_READER)
+        texts = {(text.section, text.key) for text in self._texts}
         for section, table in sections.items():
             if section not in known:
                 why = self._elsewhere(section) or near(section, known)
@@ -66,13 +78,15 @@ class Check:
                 self._meant |= {key.name for key in self.rows if key.section in get_close_matches(section, known, 1)}
                 continue
             for key, value in table.items():
-                if not is_text(section, key):
+                if (section, key) not in texts:
                     self._number(section, key, value)
 
     def _elsewhere(self, name: str) -> str:
-        """Return which robots have a section or a number that this one has not."""
-        only = [key.only for key in KEYS if name in (key.section, key.name) and key not in self.rows]
-        return f": it belongs to a robot with a {only[0]}" if only else ""
+        """Return which robots have a section, a number or a text that this one has not."""
+        here = {row.only for row in self._all}
+        everywhere: list[Key | Text] = [*KEYS, *TEXTS]
+        only = [row.only for row in everywhere if name in (row.section, row.name) and row.only not in here]
+        return f": it belongs to a robot with {'' if only[0].endswith('s') else 'a '}{only[0]}" if only else ""
 
     def _number(self, section: str, key: str, value: object) -> None:
         name = f"{section}.{key}" if section else key
@@ -117,8 +131,15 @@ class Check:
 
     def _override(self, name: str, text: str) -> None:
         known = [key.name for key in self.rows]
+        if name in self.choices:
+            self.choices[name] = text
+            return
+        if name not in known and ALSO.get(name) in known:
+            name = ALSO[name]
         if name not in known:
-            self.mistakes.append(f"set={name}: no such number{self._elsewhere(name) or near(name, known)}")
+            chosen = f"{name.partition('.')[2]}={text}: no such choice"
+            what = chosen if name in CHOICES else f"set={name}: no such number"
+            self.mistakes.append(f"{what}{self._elsewhere(name) or near(name, known)}")
             return
         try:
             self.entries[name] = Entry(name, float(text), "assumed", FROM_ADDRESS)
@@ -140,6 +161,19 @@ class Check:
         if len(values) == len(names) and not values[0] < values[1] <= values[2] < values[3]:
             self._say(names[0], f"the temperatures must rise: {', '.join(names)}")
 
+    def _constraints(self, overrides: Mapping[str, str]) -> None:
+        """Note choices that cannot be with the numbers of the object."""
+        for name, words, keys, why in NEEDS:
+            choice, numbers = self.choices.get(name), [self.entries.get(key) for key in keys]
+            if choice not in words or any(number is None or number.value > 0 for number in numbers):
+                continue
+            key = name.partition(".")[2]
+            what = f"{key} {choice} needs {' or '.join(keys)} above 0: {why}"
+            if name in overrides:
+                self.mistakes.append(f"{key}={choice}: {what}")
+            else:
+                self._say(name, what)
+
     def _wrong(self, entry: Entry, allowed: str) -> None:
         """Note that a number is none that a robot may have, in the file or from the address."""
         what = f"{entry.name} is {entry.value:g}, it must be {allowed}"
@@ -149,13 +183,20 @@ class Check:
             self._say(entry.name, what)
 
 
-def kind_of(sections: Mapping[str, dict[str, Any]]) -> str:
-    """Return the kind of shell that a file describes: by name, or where that is none by most of its keys."""
-    given = sections.get("shell", {}).get("kind")
-    if given in KINDS:
-        return str(given)
+def kind_of(sections: Sections) -> str:
+    """Return the kind of robot that a file describes: by name, or where that is none by most of its keys."""
+    for name in ("kind", "shell.kind"):
+        if (kind := given(sections, name)) in KINDS:
+            return kind
     found = {f"{section}.{key}" for section, table in sections.items() for key in table}
     return max(KINDS, key=lambda kind: len(found & {key.name for key in keys_of(kind, BENCH)}))
+
+
+def given(sections: Sections, name: str) -> str:
+    """Return the text that a file gives for section.key, or nothing."""
+    section, _, key = name.rpartition(".")
+    text = sections.get(section, {}).get(key)
+    return text if isinstance(text, str) else ""
 
 
 def line_numbers(text: str) -> dict[str, int]:

@@ -9,16 +9,18 @@ with all its mistakes, each as file:line and what to do. A lab's own robot is th
 """
 
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from hil_sim.devices.anglecamera import Optics
 from hil_sim.physics.battery import BatteryNumbers
 from hil_sim.physics.bodies import Attitude, GroundNumbers, RingNumbers, SphereNumbers, StartNumbers
 from hil_sim.physics.coilset import CoilNumbers
+from hil_sim.physics.hand.numbers import HandNumbers
 from hil_sim.robotcheck import Check, Entry, near
-from hil_sim.robotkeys import RING, Key
+from hil_sim.robotkeys import FINGERS, RING, SPHERE
 
 FOLDER = Path(__file__).parent / "robots"
 PROFILES = Path(__file__).parents[1] / "firmware" / "robots"
@@ -34,12 +36,14 @@ class NoSuchRobot(RobotFileError, LookupError):
 
 @dataclass(frozen=True)
 class Wiring:
-    """The resistances between supply and coils, and where each coil is soldered."""
+    """The resistances between supply and coils, and where each coil and each servo is soldered."""
 
-    lead_ohm: float  # copper of one coil
-    switch_ohm: float  # MOSFET of one coil
-    source_ohm: float  # shared by all coils
-    outputs: dict[str, tuple[int, int]]  # label: chip (I2C address), output
+    source_ohm: float  # shared by all coils and servos
+    outputs: dict[str, tuple[int, int]]  # label of a coil: chip (I2C address), output
+    pins: dict[str, int]  # label of a joint: the processor's pin for its servo
+    lead_ohm: float = 0.0  # copper of one coil
+    switch_ohm: float = 0.0  # MOSFET of one coil
+    dead_band_us: float = 0.0  # of the servos
     supply_v: float = 0.0  # of the bench supply; a robot with a battery has none
 
     @property
@@ -66,15 +70,19 @@ class RobotFile:
     name: str
     about: str
     profile: Path
-    kind: str  # of the shell: "ring" or "sphere"
+    kind: str  # "ring", "sphere" or "fingers"
     labels: tuple[str, ...]  # of the coils from the core, then of those between points of the hoops
     jumps: tuple[tuple[str, str], ...]  # labels of the points between which each of the latter runs, in their order
+    joints: tuple[str, ...]  # labels of the joints: of the right finger, then of the left one
     ring: RingNumbers | None
     sphere: SphereNumbers | None
-    coil: CoilNumbers
-    ground: GroundNumbers
-    start: StartNumbers | Attitude
+    fingers: HandNumbers | None
+    camera: Optics | None
+    coil: CoilNumbers | None
+    ground: GroundNumbers | None
+    start: StartNumbers | Attitude | None
     tolerance: float  # of a step in time [m]
+    ambient_degc: float
     wiring: Wiring
     battery: BatteryNumbers | None
     sensors: Sensors
@@ -101,7 +109,7 @@ def load(robot: str, overrides: Mapping[str, str] | None = None) -> RobotFile:
     check = Check(path, text, data, overrides or {})
     if check.mistakes:
         raise RobotFileError("\n".join(check.mistakes))
-    return _robot(path, data, check.rows, check.entries)
+    return _robot(path, data, check)
 
 
 def find(robot: str) -> Path:
@@ -117,33 +125,55 @@ def find(robot: str) -> Path:
     raise NoSuchRobot(f"{what}; known are {', '.join(known)}, or give the path of a robot file")
 
 
-def _robot(path: Path, data: dict[str, Any], rows: Sequence[Key], entries: Mapping[str, Entry]) -> RobotFile:
+def _robot(path: Path, data: dict[str, Any], check: Check) -> RobotFile:
     """Return a file without mistakes in SI units."""
-    kind, coils = data["shell"]["kind"], data["coils"]
+    kind, coils, wiring = check.kind, data.get("coils", {}), data["wiring"]
     points = tuple(coils.get("jump_labels", ()))
-    groups: dict[str, dict[str, Any]] = {"battery": {}}
-    for key in rows:
-        groups.setdefault(key.target, {})[key.field] = entries[key.name].value * key.si
-    groups["body"]["nodes"] = int(groups["body"]["nodes"])
-    outputs = {label: (chip, output) for label, (chip, output) in data["wiring"]["outputs"].items()}
+    groups = _groups(check)
+    shelled = kind != FINGERS
     return RobotFile(
         name=path.stem,
         about=data["about"],
         profile=_profile(path, data["profile"]),
         kind=kind,
-        labels=(*coils["labels"], *points),
+        labels=(*coils.get("labels", ()), *points),
         jumps=tuple(zip(points, points[1:] + points[:1], strict=True)),
+        joints=tuple(data["fingers"]["labels"]) if kind == FINGERS else (),
         ring=RingNumbers(**groups["body"]) if kind == RING else None,
-        sphere=SphereNumbers(**groups["body"]) if kind != RING else None,
-        coil=CoilNumbers(**groups["coil"]),
-        ground=GroundNumbers(**groups["ground"]),
-        start=(StartNumbers if kind == RING else Attitude)(**groups["start"]),
-        tolerance=groups["numerics"]["tolerance"],
-        wiring=Wiring(outputs=outputs, **groups["wiring"]),
-        battery=BatteryNumbers(**groups["battery"]) if groups["battery"] else None,
+        sphere=SphereNumbers(**groups["body"]) if kind == SPHERE else None,
+        fingers=_hand(groups, check.choices) if kind == FINGERS else None,
+        camera=Optics(**groups["camera"]) if "camera" in groups else None,
+        coil=CoilNumbers(**groups["coil"]) if shelled else None,
+        ground=GroundNumbers(**groups["ground"]) if shelled else None,
+        start=(StartNumbers if kind == RING else Attitude)(**groups["start"]) if shelled else None,
+        tolerance=groups["numerics"]["tolerance"] if shelled else 0.0,
+        ambient_degc=groups["ground"]["T_amb"],
+        wiring=Wiring(outputs=_outputs(wiring), pins=dict(wiring.get("pins", {})), **groups["wiring"]),
+        battery=BatteryNumbers(**groups["battery"]) if "battery" in groups else None,
         sensors=Sensors(**groups["sensors"]),
-        entries=tuple(entries.values()),
+        entries=tuple(check.entries.values()),
     )
+
+
+def _groups(check: Check) -> dict[str, dict[str, Any]]:
+    """Return the numbers in SI units by their group and field."""
+    groups: dict[str, dict[str, Any]] = {}
+    for key in check.rows:
+        groups.setdefault(key.target, {})[key.field] = check.entries[key.name].value * key.si
+    if "nodes" in groups.get("body", {}):
+        groups["body"]["nodes"] = int(groups["body"]["nodes"])
+    return groups
+
+
+def _hand(groups: dict[str, dict[str, Any]], choices: Mapping[str, str]) -> HandNumbers:
+    numbers = groups["fingers"]
+    numbers["B"] = numbers["a"] + numbers["w"] / 2 + numbers["e"] + numbers.pop("gap")
+    numbers |= {name.removeprefix("fingers."): word for name, word in choices.items()}
+    return HandNumbers(g=groups["ground"]["gravity"], **numbers)
+
+
+def _outputs(wiring: Mapping[str, Any]) -> dict[str, tuple[int, int]]:
+    return {label: (chip, output) for label, (chip, output) in wiring.get("outputs", {}).items()}
 
 
 def _profile(path: Path, name: str) -> Path:

@@ -1,45 +1,79 @@
-"""What is no number in a robot file: its texts, the labels of its coils and where each of them is soldered.
+"""What is no number in a robot file: its texts, the labels of its coils or joints and where each of them is soldered.
 
-    for name, what in mistakes_in(sections, kind): ...
+    for name, what in mistakes_in(sections, features): ...
 
 `sections` are the file's tables by name, "" what stands above them; `name` is the section.key that a mistake is at.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 from hil_sim.directions import direction
-from hil_sim.robotkeys import KINDS, SPHERE
+from hil_sim.robotkeys import COILS, FINGERS, RING, SHELL, SPHERE
 
 CHIPS = (96, 97)  # PWM chips of the board
-TEXTS = {"": ("about", "profile"), "shell": ("kind",), "coils": ("labels",), "wiring": ("outputs",)}
-MAY = {"coils": ("jump_labels",)}  # texts that need not be there
-
+PINS = (8, 9, 10)  # of the board, for servos
 Mistakes = Iterator[tuple[str, str]]
 Sections = Mapping[str, dict[str, Any]]
 
 
-def is_text(section: str, key: str) -> bool:
-    """Return whether this key holds no number."""
-    return key in TEXTS.get(section, ()) or key in MAY.get(section, ())
+@dataclass(frozen=True)
+class Text:
+    """One thing in a robot file that is no number."""
+
+    section: str
+    key: str
+    only: str = ""  # robots that have this have the text
+    words: tuple[str, ...] = ()  # it is one of these
+    needed: bool = True
+
+    @property
+    def name(self) -> str:
+        """Return section and key."""
+        return f"{self.section}.{self.key}" if self.section else self.key
 
 
-def mistakes_in(sections: Sections, kind: str) -> Mistakes:
-    """Yield section.key and what is wrong for everything but the numbers, as a robot of that kind should have it."""
-    for section, names in TEXTS.items():
-        for name in names:
-            if name not in sections.get(section, {}):
-                yield section, f"{f'[{section}]' if section else 'the file'} lacks {name}"
-    for name in TEXTS[""]:
-        if not isinstance(sections[""].get(name, ""), str):
-            yield name, f'{name}: write it as {name} = "text"'
-    given = sections.get("shell", {}).get("kind", kind)
-    if given not in KINDS:
-        yield "shell.kind", f"kind {given!r} is none of {', '.join(KINDS)}"
-    yield from _coils(sections, kind)
+TEXTS = (
+    Text("", "about"),
+    Text("", "profile"),
+    Text("", "kind", FINGERS, (FINGERS,)),
+    Text("shell", "kind", SHELL, (RING, SPHERE)),
+    Text("coils", "labels", COILS),
+    Text("coils", "jump_labels", COILS, needed=False),
+    Text("wiring", "outputs", COILS),
+    Text("fingers", "tip", FINGERS, ("nail", "radial")),
+    Text("fingers", "contact", FINGERS, ("frictionless", "stick", "coulomb")),
+    Text("fingers", "motion", FINGERS, ("quasi-static", "dynamic")),
+    Text("fingers", "labels", FINGERS),
+    Text("wiring", "pins", FINGERS),
+)
+CHOICES = {text.name: text.words for text in TEXTS if text.section == "fingers" and text.words}
+"""The texts that an address may set, and what it may set them to."""
 
 
-def _coils(sections: Sections, kind: str) -> Mistakes:
+def texts_of(features: Collection[str]) -> tuple[Text, ...]:
+    """Return the texts that a robot with these features has."""
+    return tuple(text for text in TEXTS if not text.only or text.only in features)
+
+
+def mistakes_in(sections: Sections, features: Collection[str]) -> Mistakes:
+    """Yield section.key and what is wrong for everything but the numbers, as a robot with these features has it."""
+    for text in texts_of(features):
+        value = sections.get(text.section, {}).get(text.key)
+        if value is None and text.needed:
+            yield text.name, f"{f'[{text.section}]' if text.section else 'the file'} lacks {text.key}"
+        elif value is not None and text.words and value not in text.words:
+            yield text.name, f"{text.key} {value!r} is none of {', '.join(text.words)}"
+        elif text.name in ("about", "profile") and not isinstance(value, str):
+            yield text.name, f'{text.key}: write it as {text.key} = "text"'
+    if COILS in features:
+        yield from _coils(sections, SPHERE in features)
+    if FINGERS in features:
+        yield from _fingers(sections)
+
+
+def _coils(sections: Sections, in_hoops: bool) -> Mistakes:
     coils, wiring = (sections.get(name, {}) for name in ("coils", "wiring"))
     spokes, points = coils.get("labels", []), coils.get("jump_labels", [])
     for name, labels in (("labels", spokes), ("jump_labels", points)):
@@ -52,7 +86,7 @@ def _coils(sections: Sections, kind: str) -> Mistakes:
     if len({*spokes, *points}) < len(spokes) + len(points):
         yield "coils.labels", "labels: each coil needs its own"
         return
-    if kind == SPHERE:
+    if in_hoops:
         yield from _directions("labels", spokes)
         yield from _directions("jump_labels", points)
     elif points:
@@ -91,3 +125,25 @@ def _outputs(outputs: object, labels: list[str]) -> Mistakes:
         if (chip, output) in seen:
             yield "wiring.outputs", f"outputs: {label} and {seen[chip, output]} share [{chip}, {output}]"
         seen[chip, output] = label
+
+
+def _fingers(sections: Sections) -> Mistakes:
+    """Yield what is wrong with the labels of two joints, the right one first, and with the pins of their servos."""
+    labels, pins = sections.get("fingers", {}).get("labels"), sections.get("wiring", {}).get("pins")
+    if not (isinstance(labels, list) and len(labels) == 2 and all(isinstance(label, str) for label in labels)):
+        if labels is not None:
+            yield "fingers.labels", 'labels: write them as ["R", "L"], the right finger first'
+        return
+    if labels[0] == labels[1]:
+        yield "fingers.labels", "labels: each joint needs its own"
+        return
+    if pins is None:
+        return
+    if not isinstance(pins, dict) or sorted(pins) != sorted(labels):
+        yield "wiring.pins", f"pins: one pin for each of {', '.join(labels)}, as in {labels[0]} = {PINS[0]}"
+        return
+    for label, pin in pins.items():
+        if type(pin) is not int or pin not in PINS:
+            yield "wiring.pins", f"pins: {label} on pin {pin}, the board has servos on {', '.join(map(str, PINS))}"
+    if pins[labels[0]] == pins[labels[1]]:
+        yield "wiring.pins", f"pins: {labels[0]} and {labels[1]} share {pins[labels[0]]}"

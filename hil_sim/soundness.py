@@ -20,6 +20,10 @@ class CameApart(OSError):
     """A body whose numbers are beyond what its solver bears."""
 
 
+class OutOfModel(CameApart):
+    """A body in a state for which its model says nothing, as a fingertip pressed to the edge of its plate."""
+
+
 class Soundness:
     """Remembers where the hub was when it was last looked at."""
 

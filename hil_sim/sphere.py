@@ -47,6 +47,8 @@ class SpherePlant(CoilBody):
     def __init__(self, robot: RobotFile, seed: int = 0, rho: float = 0.5, tolerance: float | None = None) -> None:
         assert robot.sphere is not None
         assert isinstance(robot.start, Attitude)
+        assert robot.ground is not None
+        assert robot.coil is not None
         prepare(body.advance, coil.advance)
         ground, count, numbers = robot.ground, len(robot.labels), robot.sphere
         super().__init__(robot.labels, ground)

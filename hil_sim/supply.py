@@ -1,9 +1,10 @@
-"""The common supply of the coils: what each coil is heated with, and what the monitor's pins see.
+"""The common supply of coils and servos: what each coil is heated with, and what the monitor's pins see.
 
 This is where the netlist meets the physics: gates (shares of the PWM period) go in, powers and voltages come out.
 The order on the rail is source, shunt, the monitor's bus pin, the PWR_EN switch, coils; so the monitor sees the
 supply's voltage also while the switch is open. The resistance of the source includes the shunt. A battery on board
-stands before that source, and feeds the board's own chips before the shunt.
+stands before that source, and feeds the board's own chips before the shunt. Servos take a current that does not depend
+on the voltage, `load_a`: behind the same shunt and switch, beside the coils.
 
 A coil can be open or shorted at its terminals, and the source can sag. What a short turns to heat warms no coil.
 
@@ -53,7 +54,7 @@ class Battery:
 
 
 class Supply:
-    """Source, shunt and coils. `power_w` and `current_a` are the means over a PWM period.
+    """Source, shunt and coils. `power_w` and `current_a` are the means over a PWM period; `solve` takes up `load_a`.
 
     The source is a bench supply of `voltage_v`, or the battery where there is one.
     """
@@ -68,12 +69,14 @@ class Supply:
     ) -> None:
         self.power_w: FloatArray = np.zeros(len(series_ohm))
         self.current_a = 0.0
+        self.load_a = 0.0
         self.battery = battery
         self._series_ohm = series_ohm.copy()
         self._source_ohm = source_ohm + (battery.inner_ohm if battery else 0.0)
         self._nominal_v = voltage_v
         self._sag = 0.0
         self._voltage_v = self._source_v()
+        self._loaded_a = 0.0  # `load_a` as of the last solution
         self._circuit = circuit_of(series_ohm, self._source_ohm, self._voltage_v)
         self._shunt_ohm = shunt_ohm
         self._on: FloatArray = np.zeros(len(series_ohm))
@@ -89,8 +92,8 @@ class Supply:
 
     @property
     def stale(self) -> bool:
-        """Whether the source has moved since `solve`, so that it should be done again."""
-        return abs(self._source_v() - self._voltage_v) > STALE_V
+        """Whether source or load have moved since `solve`, so that it should be done again."""
+        return abs(self._source_v() - self._voltage_v) > STALE_V or self.load_a != self._loaded_a
 
     def spend(self, duration_us: int) -> None:
         """Take from the battery, where there is one, what has been drawn for so long."""
@@ -112,18 +115,19 @@ class Supply:
 
     def drive(self, gates: Sequence[Gate], period_us: float) -> None:
         """Take the gates that hold from now on; `solve` must follow."""
-        self._on, self._width = np.array(gates, float).T.copy()
+        self._on, self._width = np.array(gates, float).reshape(-1, 2).T.copy()
         self._period_us = period_us
 
     def solve(self, resistance_ohm: FloatArray) -> None:
         """Work out powers and currents for resistances that hold from now on."""
-        self._voltage_v = self._circuit.supply[0] = self._source_v()
+        self._voltage_v, self._loaded_a = self._source_v(), self.load_a
+        self._circuit.supply[0] = self._voltage_v - self._source_ohm * self._loaded_a  # what the coils have without any
         ohm = self._resistance_ohm
         ohm[:] = resistance_ohm
         if self._bridged:
             share = np.where(self._shorted, SHORT_OHM / (SHORT_OHM + ohm), 1.0)  # of its power, a coil's own
             ohm[:] = np.where(self._shorted, 1 / (1 / SHORT_OHM + 1 / ohm), ohm)
-        self.current_a = self._solve_period(self._circuit, self._on, self._width, ohm, self.power_w)
+        self.current_a = self._solve_period(self._circuit, self._on, self._width, ohm, self.power_w) + self._loaded_a
         if self._bridged:
             self.power_w *= share
         self._intervals = int(self._circuit.intervals[0])
@@ -141,7 +145,7 @@ class Supply:
     def peak_shunt_v(self) -> float:
         """Return the greatest voltage across the shunt in the PWM period."""
         currents_a: list[float] = self._circuit.current[: self._intervals].tolist()
-        return self._shunt_ohm * max(currents_a)
+        return self._shunt_ohm * (max(currents_a) + self._loaded_a)
 
     def integrals_vus(
         self, begun_us: int, from_us: int, until_us: int, shunt_us: int, bus_us: int
@@ -150,4 +154,6 @@ class Supply:
         shunt, bus, bus_time_us = self._window_charges(
             self._circuit, self._period_us, begun_us, from_us, until_us, shunt_us, bus_us
         )
+        shunt += self._loaded_a * (until_us - from_us - bus_time_us)
+        bus += self._loaded_a * bus_time_us
         return self._shunt_ohm * shunt, self._voltage_v * bus_time_us - self._source_ohm * bus

@@ -1,0 +1,96 @@
+"""The wires between joints and board: pulses to the servos, their current on the rail, what converter and camera see.
+
+A servo's current goes through an amplifier of 0.5 V/A, its angle through its own potentiometer; both are read by the
+board's converter, in the order of the joints: currents on its first channels, angles on those that follow. ASSUMED:
+the potentiometer turns 300 degrees from end to end with its middle at 0, so -90 and 90 degrees are 410 and 3686 counts.
+
+    joints = Joints(plant, board, pins=[8, 9])
+    joints.drive(now_us)            # pass on what the pulses command
+    supply.load_a = joints.load_a
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hil_sim.board import Board
+from hil_sim.record import JointRecord
+
+CURRENT_V_PER_A = 0.5
+REFERENCE_V = 3.3
+MIDDLE_V = 2048 / 4096 * REFERENCE_V
+ANGLE_V_PER_DEG = 18.2 / 4096 * REFERENCE_V
+
+
+@runtime_checkable
+class Jointed(Protocol):
+    """A body with joints, in the order of the firmware's channels."""
+
+    @property
+    def joints(self) -> Sequence[str]:
+        """The joints."""
+
+    @property
+    def joint_deg(self) -> NDArray[np.float64]:
+        """Their angles [deg]."""
+
+    @property
+    def joint_current_a(self) -> NDArray[np.float64]:
+        """The currents of their servos [A]."""
+
+    @property
+    def object_deg(self) -> float | None:
+        """The angle of the object that the camera looks at [deg], or None when there is none to be seen."""
+
+    def command(self, degrees: Sequence[float | None]) -> None:
+        """Tell each servo where to go from now on; None: it is limp."""
+
+    def snapshot(self) -> dict[str, Any]:
+        """Return the shape, for pictures."""
+
+
+class Joints:
+    """Joints of a body on a board. `records` say what was done to each."""
+
+    def __init__(self, plant: Jointed, board: Board, pins: Sequence[int]) -> None:
+        self.records = [JointRecord(label) for label in plant.joints]
+        self._plant = plant
+        self._board = board
+        self._servos = [board.servos[pin] for pin in pins]
+        for index in range(len(pins)):
+            board.adc.inputs[index] = self._current_v(index)
+            board.adc.inputs[angle_input(index, len(pins))] = self._angle_v(index)
+
+    @property
+    def load_a(self) -> float:
+        """Return what the servos take from the rail together."""
+        return sum(map(self._current_a, range(len(self.records))))
+
+    def drive(self, now_us: int) -> None:
+        """Pass on where the pulses tell the servos to go; without power they are limp."""
+        degrees = [servo.commanded_deg(now_us) if self._board.powered else None for servo in self._servos]
+        self._plant.command(degrees)
+        for index, (record, degree) in enumerate(zip(self.records, degrees, strict=True)):
+            record.command(degree, now_us)
+            record.peak_a = max(record.peak_a, self._current_a(index))
+
+    def look(self, now_us: int) -> None:
+        """Let the camera see the object."""
+        if self._board.camera is not None:
+            self._board.camera.expose(now_us, self._plant.object_deg)
+
+    def _current_a(self, index: int) -> float:
+        return float(self._plant.joint_current_a[index]) if self._board.powered else 0.0
+
+    def _current_v(self, index: int) -> Callable[[], float]:
+        return lambda: CURRENT_V_PER_A * self._current_a(index)
+
+    def _angle_v(self, index: int) -> Callable[[], float]:
+        return lambda: MIDDLE_V + ANGLE_V_PER_DEG * float(self._plant.joint_deg[index])
+
+
+def angle_input(joint: int, joints: int) -> int:
+    """Return the converter's input that reads the angle of one of so many joints."""
+    return joints + joint
