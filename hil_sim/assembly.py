@@ -12,7 +12,6 @@ from hil_sim.devices.ntc import Ntc
 from hil_sim.faults.file import load as load_faults
 from hil_sim.faults.file import plan
 from hil_sim.faults.happening import schedule
-from hil_sim.fingers import FingersPlant
 from hil_sim.physics.hand.fingertip import HandError
 from hil_sim.plant import RingPlant
 from hil_sim.robotcheck import near
@@ -70,6 +69,8 @@ def plant_of(robot: RobotFile, seed: int, body: str = BODIES[0]) -> Plant:
     if robot.kind == FINGERS:
         if body != BODIES[0]:
             raise RobotFileError(f"body={body}: {robot.name} has no coils to heat while it does not move")
+        from hil_sim.fingers import FingersPlant  # noqa: PLC0415  (compiled physics that others do without)
+
         return FingersPlant(robot)
     plant = RingPlant(robot, seed) if robot.kind == RING else SpherePlant(robot, seed)
     return plant if body == BODIES[0] else still(plant)
