@@ -103,10 +103,12 @@ def robots(as_json: bool) -> None:
             robot = load(name)
         except RobotFileError as error:
             raise NoRobot(str(error)) from error
-        address, labels = f"sim:{name}", list(robot.labels)
-        fields = {"robot": name, "address": address, "kind": robot.kind, "about": robot.about, "coils": labels}
-        coils = click.wrap_text(" ".join(labels), 100, "    ", "    ")
-        _say(as_json, fields, f"{address:13} {len(labels):2} coils  {robot.about}\n{coils}")
+        address, labels, joints = f"sim:{name}", list(robot.labels), list(robot.joints)
+        fields: dict[str, Any] = {"robot": name, "address": address, "kind": robot.kind, "about": robot.about}
+        fields |= {"coils": labels, "joints": joints}
+        count = f"{len(labels):2} coils" if labels else f"{len(joints):2} joints"
+        parts = click.wrap_text(" ".join([*labels, *joints]), 100, "    ", "    ")
+        _say(as_json, fields, f"{address:22} {count:9}  {robot.about}\n{parts}")
 
 
 def _addresses(
