@@ -28,7 +28,7 @@ class Progress(Protocol):
     """Whoever shows how far a run has come."""
 
     def __call__(self, stage: str, done: float) -> None:
-        """Show that of `stage` ("upload", "self-test", "run") this many bytes, coils or seconds are done."""
+        """Show that of `stage` ("upload", "self-test", "run") this many bytes, channels or seconds are done."""
 
 
 class Keeper:
@@ -87,21 +87,22 @@ class Keeper:
 
 @dataclass(frozen=True, slots=True)
 class Ending:
-    """How a run ended; `event` is the robot's last word, `lost` why there is none."""
+    """How a run ended; `event` is the robot's last word, about a channel of that `kind`; `lost` why there is none."""
 
     result: str
     event: Event | None = None
     lost: LinkLost | None = None
+    kind: str = "coil"
 
     def error(self) -> SoftrigError | None:
         """Return what the caller should raise, or None when the script ran to its end."""
         if self.lost or self.event is None or self.result == "done":
             return self.lost
-        if self.result in ("guard", "timeout", "cancelled"):
+        if self.result in ("guard", "timeout", "camera lost", "cancelled"):
             return ScriptFailed(f"the script ended early: {_cause(self.event)}")
         if self.result == "lease":
-            return LinkLost("the robot heard nothing from this host for its lease and switched its coils off")
-        return RobotFault(self.event.code, self.event.value, self.event.coil)
+            return LinkLost("the robot heard nothing from this host for its lease and switched everything off")
+        return RobotFault(self.event.code, self.event.value, self.event.coil, self.kind)
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +141,7 @@ def watch(robot: Robot, progress: Progress, if_lost: IfLost) -> Ending:
     if if_lost.stops and robot.interruptions() and event.code == codes.STOP:
         cause = robot.interruptions()[-1].cause
         return Ending("link lost", event, LinkLost(f"{cause}; once it was back, the robot was stopped, as asked"))
-    return Ending(_result(event), event)
+    return Ending(_result(event), event, kind=robot.profile.parts.kind(event.coil))
 
 
 def outliving(code: bytes) -> bytes:
@@ -175,7 +176,7 @@ def _result(event: Event) -> str:
     if event.event == "finished":
         return "done"
     if event.event == "aborted":
-        return "timeout" if event.code == codes.WAIT_TIMEOUT else "cancelled"
+        return {codes.WAIT_TIMEOUT: "timeout", codes.CAMERA: "camera lost"}.get(event.code, "cancelled")
     if event.event == "disarmed":
         return "lease" if event.code == codes.LEASE_EXPIRED else "cancelled"
     return {codes.GUARD: "guard", codes.STOP: "stopped"}.get(event.code, "fault")

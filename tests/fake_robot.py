@@ -114,6 +114,12 @@ class FakeRobot:
             )
         elif message is messages.STATUS_REQUEST:
             self._status(received.seq, now_ms)
+        elif message is messages.SETTINGS_REQUEST:
+            resistances = bytes(2 * len(self.duty))
+            self._send(
+                messages.SETTINGS, now_ms, request=received.seq, source=0, node=0, board_offset_decidegc=0,
+                resistances=resistances,
+            )  # fmt: skip
         else:
             self._obey(message, order, now_ms)
             self._send(messages.OK, now_ms, request=received.seq)

@@ -22,9 +22,9 @@ def command(robot: str, without: tuple[str, ...], as_json: bool) -> None:
     cannot know which coil is cold.
     """
     with connected(robot) as face:
+        nominal = face.profile.coil.resistance_mohm
         face.calibrate(without)
         measured = face.settings().resistance_mohm
-        nominal = face.profile.coil.resistance_mohm
     emit(as_json, {"resistance_ohm": {coil: mohm / 1000 for coil, mohm in measured.items()}}, _lines(measured, nominal))
 
 

@@ -10,7 +10,9 @@ import click
 from host.cli.connection import connected
 from host.cli.options import json_option, robot_option
 from host.cli.output import emit
+from host.errors import amount
 from host.kept import Fault
+from host.profile import Parts
 from protocol import causes
 
 
@@ -27,7 +29,8 @@ def command(robot: str, as_json: bool, clear: bool) -> None:
         faults = face.faults()
         if clear:
             face.clear_faults()
-    emit(as_json, {"faults": [_fields(fault) for fault in faults], "cleared": clear}, _lines(faults, clear))
+        parts = face.profile.parts
+    emit(as_json, {"faults": [_fields(fault) for fault in faults], "cleared": clear}, _lines(faults, clear, parts))
 
 
 def _fields(fault: Fault) -> dict[str, object]:
@@ -35,14 +38,14 @@ def _fields(fault: Fault) -> dict[str, object]:
     return {**asdict(fault), "code": row.name if row else fault.code, "unit": row.unit if row else ""}
 
 
-def _lines(faults: list[Fault], cleared: bool) -> Iterator[str]:
+def _lines(faults: list[Fault], cleared: bool, parts: Parts) -> Iterator[str]:
     if not faults:
         yield "no faults are kept"
     for fault in faults:
         row = causes.row(fault.code)
         what = f"{row.name} {row.cause}" if row else f"code {fault.code}, unknown to this version"
-        where = f", coil {fault.coil}" if fault.coil else ""
-        figure = f" ({fault.value} {row.unit})" if row and row.unit else ""
+        where = f", {parts.kind(fault.coil)} {fault.coil}" if fault.coil else ""
+        figure = f" ({amount(fault.value, row.unit)})" if row and row.unit else ""
         yield f"start {fault.start} ({fault.cause}), {fault.now_ms / 1000:.3f} s, {fault.state}{where}: {what}{figure}"
     if cleared and faults:
         yield "cleared"

@@ -27,7 +27,7 @@ PERIOD_MS = 50
 def command(coils: tuple[str, ...], robot: str, duty: int, hold: int, without: tuple[str, ...], as_json: bool) -> None:
     """Heat coils or groups for a limited time: arms, fires, watches until they are off, disarms."""
     with connected(robot) as face:
-        labels = face.profile.named(face.profile.mask(coils) & ~face.profile.mask(without))
+        labels = face.profile.named(face.profile.coil_mask(coils) & ~face.profile.mask(without))
         if not labels:
             raise BadRequest("nothing to fire: every coil that was named is among those of --without")
         face.subscribe(PERIOD_MS)
@@ -45,9 +45,9 @@ def _peaks(face: Robot, time_ms: int) -> dict[str, float]:
     peaks: dict[str, float] = {}
     for record in face.listen(time_ms):
         if isinstance(record, Event) and record.event == "tripped":
-            raise RobotFault(record.code, record.value, record.coil)
+            raise RobotFault(record.code, record.value, record.coil, face.profile.parts.kind(record.coil))
         if isinstance(record, Telemetry):
-            for label, degc in zip(face.profile.labels, record.temperature_degc, strict=False):
+            for label, degc in zip(face.profile.coil_labels, record.temperature_degc, strict=False):
                 peaks[label] = max(degc, peaks.get(label, degc))
     return peaks
 

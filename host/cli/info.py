@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import asdict
 from typing import Any
 
 import click
@@ -11,6 +12,10 @@ from host.cli.connection import connected
 from host.cli.options import json_option, robot_option
 from host.cli.output import emit
 from host.definitions import explained
+from host.profile import Profile
+
+OF_COILS = ("duty_max_permille", "hold_max_ms", "on_max_ms", "rest_ms", "heat_budget_mj", "trip_degc")
+OF_JOINTS = ("least_centideg", "most_centideg", "slew_centideg_per_s", "hold_max_ms", "stall_ma", "stall_ms")
 
 
 @click.command("info")
@@ -30,22 +35,29 @@ def command(robot: str, with_dictionary: bool, as_json: bool) -> None:
             **face.info(),
             "groups": {name: list(labels) for name, labels in profile.groups.items()},
             "supply_mv": profile.supply_mv,
-            "limits": {
-                "duty_max_permille": profile.coil.duty_max_permille,
-                "hold_max_ms": profile.coil.hold_max_ms,
-                "on_max_ms": profile.coil.on_max_ms,
-                "rest_ms": profile.coil.rest_ms,
-                "heat_budget_mj": profile.coil.heat_budget_mj,
-                "trip_degc": profile.coil.trip_degc,
-                "current_max_ma": profile.supply.current_max_ma,
-                "at_once_max": profile.supply.at_once_max,
-                "lease_ms": profile.session.lease_ms,
-                "program_bytes_max": profile.program.bytes_max,
-            },
+            "limits": _limits(profile),
         }
     if with_dictionary:
         fields["definitions"] = explanations
     emit(as_json, fields, [*_lines(fields), *explanations])
+
+
+def _limits(profile: Profile) -> dict[str, Any]:
+    """Return what the robot allows; nothing of coils or joints where there are none."""
+    limits: dict[str, Any] = {}
+    if profile.coil_limits:
+        limits = {name: getattr(profile.coil_limits, name) for name in OF_COILS}
+    if profile.servo_limits:
+        limits["joint"] = {name: getattr(profile.servo_limits, name) for name in OF_JOINTS}
+    if profile.orient:
+        limits["orient"] = asdict(profile.orient)
+    return {
+        **limits,
+        "current_max_ma": profile.supply.current_max_ma,
+        "at_once_max": profile.supply.at_once_max,
+        "lease_ms": profile.session.lease_ms,
+        "program_bytes_max": profile.program.bytes_max,
+    }
 
 
 def _lines(fields: dict[str, Any]) -> Iterator[str]:
@@ -55,13 +67,32 @@ def _lines(fields: dict[str, Any]) -> Iterator[str]:
     if fields["paired"]:
         yield "  paired      takes orders only with its pairing key"
     yield f"  dictionary  {fields['dictionary']}, start number {fields['boot']}"
-    yield f"  coils       {' '.join(fields['coils'])}"
+    yield f"  coils       {' '.join(fields['coils']) or 'no coils'}"
+    if fields["joints"]:
+        yield f"  joints      {' '.join(fields['joints'])}"
     for name, labels in fields["groups"].items():
         yield f"  group       {name}: {' '.join(labels)}"
+    if fields["coils"]:
+        yield from _coil_lines(limits)
+    if fields["joints"]:
+        yield from _joint_lines(limits["joint"], limits.get("orient"))
+    at_once = f", {limits['at_once_max']} coils at once" if fields["coils"] else ""
+    yield f"  supply      {fields['supply_mv'] / 1000:g} V, {limits['current_max_ma']} mA{at_once}"
+    yield f"  lease       {limits['lease_ms']} ms"
+    yield f"  program     {limits['program_bytes_max']} bytes"
+
+
+def _coil_lines(limits: dict[str, Any]) -> Iterator[str]:
     yield f"  one order   at most {limits['duty_max_permille'] / 10:g} % for {limits['hold_max_ms'] / 1000:g} s"
     yield f"  one coil    {limits['on_max_ms'] / 1000:g} s without a pause, then {limits['rest_ms'] / 1000:g} s of rest"
     yield f"  heat        {limits['heat_budget_mj']} mJ a coil, trips at {limits['trip_degc']} C"
-    volts, at_once = fields["supply_mv"] / 1000, limits["at_once_max"]
-    yield f"  supply      {volts:g} V, {limits['current_max_ma']} mA, {at_once} coils at once"
-    yield f"  lease       {limits['lease_ms']} ms"
-    yield f"  program     {limits['program_bytes_max']} bytes"
+
+
+def _joint_lines(joint: dict[str, Any], orient: dict[str, Any] | None) -> Iterator[str]:
+    least, most, slew = (joint[name] / 100 for name in OF_JOINTS[:3])
+    hold_s = joint["hold_max_ms"] / 1000
+    yield f"  one move    {least:g} to {most:g} deg, at most {slew:g} deg/s, then held for {hold_s:g} s"
+    yield f"  stall       trips at {joint['stall_ma']} mA for {joint['stall_ms']} ms"
+    if orient:
+        gain, swing = orient["gain_permille_per_s"] / 1000, orient["swing_max_centideg"] / 100
+        yield f"  orient      turns what the joints hold: gain {gain:g} /s, swing at most {swing:g} deg"

@@ -67,6 +67,13 @@ def time_ms(text: str) -> int:
     return _measured(text, {"s": 1000, "ms": 1})
 
 
+def angle_centideg(text: str) -> int:
+    """Return the hundredths of a degree that `8deg`, `-8 deg` or `8` stand for."""
+    bare = str(text).strip()
+    sign = -1 if bare.startswith("-") else 1
+    return sign * _measured(bare[1:] if bare[:1] in ("-", "+") else bare, {"deg": 100})
+
+
 def duty_permille(text: str) -> int:
     """Return the permille that `60%` or `60` stand for."""
     return _measured(text, {"%": 10})

@@ -10,8 +10,8 @@ from host.run import Progress
 
 
 @contextmanager
-def shown(code_bytes: int, coils: int, longest_s: float, quiet: bool = False) -> Iterator[Progress]:
-    """Show bars on stderr within the block: bytes uploaded, coils tested, seconds run of the longest it may take."""
+def shown(code_bytes: int, channels: int, longest_s: float, quiet: bool = False) -> Iterator[Progress]:
+    """Show bars on stderr within the block: bytes uploaded, channels tested, seconds run of the longest it may take."""
     if quiet or not sys.stderr.isatty():
         yield lambda stage, done: None
         return
@@ -27,7 +27,7 @@ def shown(code_bytes: int, coils: int, longest_s: float, quiet: bool = False) ->
     with Bars(*columns, console=Console(stderr=True), transient=True) as bars:
         stages = {
             "upload": bars.add_task("upload", total=code_bytes, unit="bytes"),
-            "self-test": bars.add_task("self-test", total=coils, unit="coils"),
+            "self-test": bars.add_task("self-test", total=channels, unit="channels"),
             "run": bars.add_task("run", total=longest_s, unit="s at most"),
         }
         yield lambda stage, done: bars.update(stages[stage], completed=done)

@@ -63,8 +63,8 @@ def command(
             keeper.recording.title = f"{Path(script).name} on {address}"
             compiled, worst = proven(tree, face.profile, params)
             _attach(log, compiled, face, address)
-            coils = len(face.profile.labels)
-            with shown(len(compiled.code), coils, worst.longest_ms / 1000, quiet=as_json) as progress:
+            channels = len(face.profile.labels)
+            with shown(len(compiled.code), channels, worst.longest_ms / 1000, quiet=as_json) as progress:
                 if outlive:
                     note(f"session {face.talk.session.number}: `softrig attach` takes the program up again")
                 code = outliving(compiled.program) if outlive else compiled.program

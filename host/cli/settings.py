@@ -40,7 +40,8 @@ def command(robot: str, as_json: bool, name: str | None, value: str | None) -> N
         if name is not None:
             _change(face, name, value)
         settings = face.settings()
-        nominal_mohm = face.profile.coil.resistance_mohm
+        limits = face.profile.coil_limits
+    nominal_mohm = limits.resistance_mohm if limits else 0
     emit(as_json, _fields(settings), _lines(settings, nominal_mohm))
 
 

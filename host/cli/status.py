@@ -10,6 +10,7 @@ import click
 from host.cli.connection import connected
 from host.cli.options import json_option, robot_option
 from host.cli.output import emit
+from host.profile import Parts
 from host.records import Status
 from protocol import causes
 
@@ -25,11 +26,14 @@ def command(robot: str, with_coils: bool, as_json: bool) -> None:
     """
     with connected(robot) as face:
         status = face.status()
-        coils = face.coils() if with_coils else {}
+        parts = face.profile.parts
+        coils = face.coils() if with_coils and parts.coils else {}
         line = face.statistics()
     fields = {"coils_seen": {label: asdict(coil) for label, coil in coils.items()}} if with_coils else {}
     lines = [f"  {label:<11} {coil}" for label, coil in coils.items()]
-    emit(as_json, {**_fields(status, line), **fields}, [*_lines(status, line), *lines])
+    if with_coils and not coils:
+        lines = ["  no coils"]
+    emit(as_json, {**_fields(status, line), **fields}, [*_lines(status, line, parts), *lines])
 
 
 def _fields(status: Status, line: dict[str, int | None]) -> dict[str, object]:
@@ -37,8 +41,8 @@ def _fields(status: Status, line: dict[str, int | None]) -> dict[str, object]:
     return {**asdict(status), "code": row.name if row else None, "link": line}
 
 
-def _lines(status: Status, line: dict[str, int | None]) -> Iterator[str]:
-    yield f"{status.state}, coils on: {' '.join(status.coils) or 'none'}"
+def _lines(status: Status, line: dict[str, int | None], parts: Parts) -> Iterator[str]:
+    yield ", ".join([status.state, *_driven(status, parts)])
     row = causes.row(status.code)
     if row:
         yield f"  last fault  {row.name} {row.cause} {row.todo}"
@@ -50,3 +54,10 @@ def _lines(status: Status, line: dict[str, int | None]) -> Iterator[str]:
     trip = "-" if line["round_trip_ms"] is None else line["round_trip_ms"]
     forged = f", {status.forged} forged" if status.forged else ""
     yield f"  line        {status.dropped} frames damaged on their way to the robot{forged}, round trip {trip} ms"
+
+
+def _driven(status: Status, parts: Parts) -> Iterator[str]:
+    """Yield which coils are on and which joints are driven, of a robot that has such."""
+    for what, labels in (("coils on", parts.coils), ("joints driven", parts.joints)):
+        if labels:
+            yield f"{what}: {' '.join(label for label in labels if label in status.coils) or 'none'}"

@@ -22,6 +22,7 @@ from protocol import variables
 
 FOR_EVER_MS = 1 << 40
 DRAWN_EVERY_MS = 100
+OF = {"*": " One value per coil.", "+": " One value per joint.", "@": " Only where there is a camera."}
 WORDS = "var."  # before the name of a variable in protocol/help.txt
 
 Show = Callable[[Record], None]
@@ -36,8 +37,8 @@ def _list(context: click.Context, option: click.Parameter, given: bool) -> None:
     for line in lines:
         if line.startswith(WORDS):
             name, _, words = line.removeprefix(WORDS).partition(" ")
-            per_coil = variables.VARIABLES[variables.number(name)].letter.endswith("*")
-            click.echo(f"{name:{width}}  {words}{' One value per coil.' if per_coil else ''}")
+            letter = variables.VARIABLES[variables.number(name)].letter
+            click.echo(f"{name:{width}}  {words}{OF.get(letter[1:], '')}")
     context.exit()
 
 
@@ -122,5 +123,5 @@ def _table(parts: Parts) -> Iterator[Show]:
 
 def _told(value: Any) -> str:
     if isinstance(value, dict):
-        return "  ".join(f"{label} {each}" for label, each in value.items())
+        return "  ".join(f"{label} {_told(each)}" for label, each in value.items()) or "-"
     return "-" if value is None else str(value)
