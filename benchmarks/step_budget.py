@@ -21,16 +21,16 @@ from hil_sim.worlds.micropython import interpreter
 
 ROOT = Path(__file__).parents[1]
 BUDGET = ROOT / "benchmarks" / "budget.json"
-PROFILE = ROOT / "firmware" / "robots" / "sphere-b.json"
-STATES = ("idle", "armed", "firing", "running")
+ROBOTS = ROOT / "firmware" / "robots"
+STATES = {"idle": "sphere-b", "armed": "sphere-b", "firing": "sphere-b", "running": "sphere-b", "turning": "fingers"}
 STEPS = 640
 BAND = 0.05
 
 
-def counted(steps: dict[str, int]) -> int:
-    """Return how many instructions the interpreter executes for so many steps in each state."""
-    pairs = [text for state in STATES for text in (state, str(steps.get(state, 0)))]
-    program = [interpreter(), str(ROOT / "tests" / "step_cost.py"), str(PROFILE), *pairs]
+def counted(robot: str, state: str, steps: int) -> int:
+    """Return how many instructions the interpreter executes for a robot, with so many steps in that state."""
+    arguments = [str(ROBOTS / f"{robot}.json"), state, str(steps)]
+    program = [interpreter(), str(ROOT / "tests" / "step_cost.py"), *arguments]
     command = ["valgrind", "--tool=callgrind", "--callgrind-out-file=/dev/null", *program]
     environment = {**os.environ, "MICROPYPATH": f"{ROOT}:.frozen", "PYTHONHASHSEED": "0"}
     done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
@@ -42,8 +42,9 @@ def counted(steps: dict[str, int]) -> int:
 
 def measured() -> dict[str, int]:
     """Return the instructions of a step in each state."""
-    none = counted({})
-    return {state: (counted({state: STEPS}) - none) // STEPS for state in STATES}
+    return {
+        state: (counted(robot, state, STEPS) - counted(robot, state, 0)) // STEPS for state, robot in STATES.items()
+    }
 
 
 def main() -> int:

@@ -2,7 +2,8 @@
 
 from protocol.variables import UNKNOWN_ANGLE
 
-AGAIN_STEPS = 20  # control steps between two looks at a camera that does not answer
+EVERY = 2  # control steps between two looks: as often as it has a new frame
+AGAIN = 10  # looks that are left out when it does not answer
 
 
 class Camera:
@@ -20,9 +21,9 @@ class Camera:
     def look(self, now_ms: int) -> None:
         """Take a new frame, if there is one."""
         self.fresh = False
-        if self._pause:
-            self._pause -= 1
-        else:
+        self._pause -= 1
+        if self._pause <= 0:
+            self._pause = EVERY
             self._take(now_ms)
         if self.known and now_ms - self.seen_ms > self._stale_ms:
             self.known = False
@@ -35,7 +36,7 @@ class Camera:
         try:
             is_new = self._driver.read()
         except OSError:
-            self._pause = AGAIN_STEPS  # else its silence would take the time of every step
+            self._pause = AGAIN * EVERY  # else its silence would take the time of every step
             return
         if is_new and self._driver.seen:
             self.fresh = self.known = True

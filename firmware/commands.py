@@ -109,7 +109,7 @@ class Commands:
 
     def _sees(self) -> None:
         """Raise Refused when a program asks for what this robot does not know now."""
-        core, limbs = self._core, self._core.control.limbs
+        core, limbs = self._core, self._core.limbs
         if self.upload.needs_attitude and not core.attitude.known:
             raise Refused(codes.NO_ATTITUDE)
         if self.upload.needs_camera and not (limbs and limbs.camera and limbs.camera.known):
@@ -200,7 +200,7 @@ class Commands:
         """Return what turns joints, or raise Refused: not now, or this robot has none."""
         self._not_running()
         self._armed()
-        limbs = self._core.control.limbs
+        limbs = self._core.limbs
         if not limbs:
             raise Refused(codes.UNKNOWN_CHANNEL)
         return limbs

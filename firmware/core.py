@@ -43,7 +43,7 @@ class Core:
         self.records = Records(self, messages.RESET if after_reset else messages.POWER_ON)
         self.control = Control(board, profile)
         self.channels, self.sense, self.guard = self.control.channels, self.control.sense, self.control.guard
-        self.attitude, self.player = self.control.attitude, self.control.player
+        self.attitude, self.player, self.limbs = self.control.attitude, self.control.player, self.control.limbs
         self.commands = Commands(self)
         self.greetings = Greetings(self)
         self.link = Link(self.dictionary.crc, self.records.settings.node, True)
@@ -74,7 +74,7 @@ class Core:
         self.tasks.report(CONTROL)
         if code:
             self.trip(code, self.guard.channel, self.guard.value)
-        if self.control.limbs and self.control.limbs.lost():
+        if self.limbs and self.limbs.lost():
             self._lose_object()
         if self.state == messages.RUNNING:
             self._end_program()
@@ -247,7 +247,7 @@ class Core:
 
     def _lose_object(self) -> None:
         """The loop that turns the object ended for want of the camera: the joints hold, a program ends."""
-        since_ms = self.now_ms - self.control.limbs.camera.seen_ms
+        since_ms = self.now_ms - self.limbs.camera.seen_ms
         if self.state == messages.RUNNING:
             self.end_program(messages.ABORTED, codes.CAMERA, since_ms)
         else:

@@ -10,7 +10,7 @@ from firmware.channels import NONE
 from protocol import codes
 
 BESIDE_COUNTS = 205  # beyond either end of the potentiometer's way: no position of it
-BROKEN_STEPS = 20  # control steps that a reading must be impossible before it is believed
+BROKEN_READS = 10  # that a reading must be impossible before it is believed
 
 
 class JointSense:
@@ -23,25 +23,27 @@ class JointSense:
         self._joints = joints
         self._rows = profile.joints
         self._limits = profile.servo
+        self._turn = 0
         self._counts = array("H", [0] * joints.count)
         self._broken = array("B", [0] * joints.count)
         self._strained_ms = array("i", [0] * joints.count)
 
     def read(self, now_ms: int) -> None:
-        """Read angle and current of each joint."""
-        joints, limits, converter = self._joints, self._limits, self._converter
-        for joint in range(joints.count):
-            row = self._rows[joint]
-            joints.current_ma[joint] = converter.counts(row.current) * limits.ua_per_count // 1000
-            counts = converter.counts(row.angle)
-            self._counts[joint] = counts
-            if limits.low_counts - BESIDE_COUNTS <= counts <= limits.high_counts + BESIDE_COUNTS:
-                self._broken[joint] = 0
-                joints.measured_centideg[joint] = limits.angle_centideg(counts)
-            elif self._broken[joint] < BROKEN_STEPS:
-                self._broken[joint] += 1
-            if joints.current_ma[joint] < limits.stall_ma or not joints.on_mask >> joints.first + joint & 1:
-                self._strained_ms[joint] = now_ms
+        """Read angle and current of one joint in its turn."""
+        joints, limits, joint = self._joints, self._limits, self._turn
+        self._turn = joint + 1 if joint + 1 < joints.count else 0
+        row = self._rows[joint]
+        current_ma = self._converter.counts(row.current) * limits.ua_per_count // 1000
+        joints.current_ma[joint] = current_ma
+        if current_ma < limits.stall_ma or not joints.on_mask >> joints.first + joint & 1:
+            self._strained_ms[joint] = now_ms
+        counts = self._converter.counts(row.angle)
+        self._counts[joint] = counts
+        if limits.low_counts - BESIDE_COUNTS <= counts <= limits.high_counts + BESIDE_COUNTS:
+            self._broken[joint] = 0
+            joints.measured_centideg[joint] = limits.angle_centideg(counts)
+        elif self._broken[joint] < BROKEN_READS:
+            self._broken[joint] += 1
 
     def check(self, now_ms: int) -> int:
         """Return the code of a fault, or 0."""
@@ -57,7 +59,7 @@ class JointSense:
     def broken(self) -> int:
         """Return a joint whose angle cannot be read, or NONE."""
         for joint in range(self._joints.count):
-            if self._broken[joint] >= BROKEN_STEPS:
+            if self._broken[joint] >= BROKEN_READS:
                 return joint
         return NONE
 

@@ -26,7 +26,7 @@ class Readings:
         self._resistance = core.control.resistance
         self._budget_mj = core.profile.coil.heat_budget_mj
         self._degrees = f"<{core.channels.count}h"
-        self._limbs = core.control.limbs
+        self._limbs = core.limbs
 
     def usual(self) -> bytes:
         """Return the usual variables, packed: they are sent so often that all are read at once.

@@ -43,6 +43,7 @@ class Sense:
         self._change_millidegc = min(coil.as_millidegc, coil.mf_millidegc)  # below it no phase changes
         self._austenite_millidegc = max(coil.af_millidegc, coil.ms_millidegc)  # from it on there is no martensite
         self._count = count
+        self._turns = max(1, count)
         self._turn = 0
         self._stale = 0
         self._updated_ms = 0
@@ -98,7 +99,7 @@ class Sense:
 
         Coils that are on are brought up at each step, the others in turn.
         """
-        turn = self._turn % self._count if self._count else 0
+        turn = self._turn % self._turns
         if turn < self._count and not on_mask >> turn & 1:
             self._heat(turn, now_ms, 0)
         updated_ms, tenth_uw = self._updated_ms, self._full_uw // 10

@@ -1,20 +1,43 @@
 """So many control steps in some states, for a counter of instructions (benchmarks/step_budget.py, under MicroPython).
 
-Arguments: the profile's path, then pairs of a state (idle, armed, firing, running) and how many steps. The core runs
-on its own drivers; the bus gives back what was written, and a current as if the one coil under test were whole.
+Arguments: the profile's path, then pairs of a state (idle, armed, firing, running; turning of a robot with joints) and
+how many steps. The core runs on its own drivers; the bus gives back what was written, a current as if the one coil
+under test were whole, and a new frame of the camera at every look.
 """
 
 import sys
 
 from firmware.core import Core
+from firmware.drivers.anglecamera import IDENTITY, SEEN, AngleCamera
 from firmware.drivers.ina226 import BUS_VOLTAGE, SHUNT_VOLTAGE, Ina226
 from firmware.drivers.lsm6ds3tr import Lsm6ds3tr
+from firmware.drivers.mcp3208 import Mcp3208
 from firmware.drivers.pca9685 import FULL, Pca9685
+from firmware.drivers.servo import Servo
 from firmware.profile import Profile
 from protocol import program
 
 STEP_MS = 5
 PWM_CHIPS = (0x60, 0x61)
+CAMERA = 0x33
+
+
+class Wire:
+    """A pin, the pulses on it, and a bus with a converter that reads the middle."""
+
+    def freq(self, hz):
+        """Take a rate."""
+
+    def duty_ns(self, width_ns):
+        """Take a width."""
+
+    def value(self, level):
+        """Take a level."""
+
+    def write_readinto(self, sent, came):
+        """Give back half of the reference of an angle, little of a current."""
+        came[2] = 0
+        came[1] = 8 if sent[1] & 0x80 else 0
 
 
 class Bus:
@@ -22,6 +45,7 @@ class Bus:
 
     def __init__(self, shunt) -> None:
         self.registers = [bytearray(1024) for _ in range(128)]
+        self.registers[CAMERA] = bytearray((IDENTITY, SEEN, 0, 50, 0))
         self._shunt = shunt
 
     def writeto_mem(self, address, register, data):
@@ -35,8 +59,10 @@ class Bus:
             self.registers[0x40][2 * SHUNT_VOLTAGE + 1] = self._shunt & 0xFF if on else 0
 
     def readfrom_mem_into(self, address, register, buffer):
-        """Give back."""
-        at = register if address in PWM_CHIPS else 2 * register
+        """Give back; a camera has a new frame each time."""
+        if address == CAMERA:
+            self.registers[CAMERA][2] = self.registers[CAMERA][2] + 1 & 255
+        at = register if address in PWM_CHIPS or address == CAMERA else 2 * register
         for i in range(len(buffer)):
             buffer[i] = self.registers[address][at + i]
 
@@ -77,6 +103,18 @@ class Table:
         """Return a driver."""
         return Lsm6ds3tr(self.bus, address)
 
+    def servo(self, pin, hz):
+        """Return a driver."""
+        return Servo(Wire(), hz)
+
+    def adc(self):
+        """Return a driver."""
+        return Mcp3208(Wire(), Wire())
+
+    def camera(self, address):
+        """Return a driver."""
+        return AngleCamera(self.bus, address)
+
     def wait_us(self, time_us):
         """Take no time."""
 
@@ -115,6 +153,10 @@ def enter(core, state):
         core.channels.fire(0b11, 300, 9000, core.now_ms)
     if state == "running":
         core.start(script())
+    if state == "turning":
+        core.limbs.move(0b01, 250, 100, 60_000, core.now_ms)
+        core.limbs.move(0b10, -250, 100, 60_000, core.now_ms)
+        core.limbs.turn(100, 60_000, 0, core.now_ms)
     core.link.begin(core.link.decoder.dictionary_crc, 0)  # a host has acknowledged what it was told
     core.link.heard_ms = core.now_ms
 
