@@ -126,7 +126,8 @@ def deepest(a: float, theta: float) -> float:
     float
         a (1 - |sin theta|), for |theta| below a right angle, else 0 [m]
     """
-    return a * (1.0 - np.abs(np.sin(theta))) * (np.cos(theta) > 0.0)
+    limit: float = a * (1.0 - np.abs(np.sin(theta))) * (np.cos(theta) > 0.0)
+    return limit
 
 
 def pressed(d: Any, theta: Any, a: float, E: float, d_t: Any = 0.0, nail: bool = True, k: float = 1.0) -> Tip:

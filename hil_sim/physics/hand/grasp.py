@@ -26,17 +26,18 @@ Source: Hirai, section 3.3. Gravity does not enter: nothing could carry the obje
 tests/test_physics_hand_grasp.py.
 """
 
-from math import atan2, cos, hypot, pi, sin, tan
+from collections.abc import Sequence
+from math import atan2, cos, degrees, hypot, pi, sin, tan
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from hil_sim.physics.compiled import Array, kernel, lean, prepare
-from hil_sim.physics.hand.fingertip import FINGERS, HandError, NoEquilibrium, deepest, refusal, springs
+from hil_sim.physics.hand.fingertip import FINGERS, ContactLost, HandError, NoEquilibrium, deepest, refusal, springs
 from hil_sim.physics.hand.geometry import centre, meet, sweep
 from hil_sim.physics.hand.numbers import Fingers, HandNumbers, fingers_of
 
-HELD, LOST_R, LOST_L, DEEP_R, DEEP_L, RESTLESS = range(6)
+HELD, LOST_R, LOST_L, DEEP_R, DEEP_L, RESTLESS, SLIDES = range(7)
 PRECISION = 1e-9  # [rad] and of the radius: the step after which Newton's next would be below rounding
 ITERATIONS_MAX = 60
 
@@ -85,38 +86,49 @@ def grasp(numbers: HandNumbers, q_r: Any, q_l: Any) -> Grasp:
         A number that cannot be
     """
     fingers = fingers_of(numbers._replace(contact="frictionless", motion="quasi-static"))
-    q_r, q_l = np.broadcast_arrays(np.atleast_1d(np.asarray(q_r, float)), np.atleast_1d(np.asarray(q_l, float)))
-    for finger, angles in zip(FINGERS, (q_r, q_l), strict=True):
-        if not np.isfinite(angles).all():
-            raise HandError(f"finger {finger}: q = {angles[~np.isfinite(angles)][0]} rad is not a finite number")
+    q_r, q_l = joint_angles(q_r, q_l)
     prepare(rest_all)
-    found = np.empty((q_r.size, 16))
-    status = rest_all(fingers, np.ascontiguousarray(q_r.ravel()), np.ascontiguousarray(q_l.ravel()), found)
+    found, status = np.empty((q_r.size, 16)), np.empty(q_r.size, np.int64)
+    rest_all(fingers, q_r, q_l, found, status)
     wrong = np.flatnonzero(status)
     if wrong.size:
-        raise failure(int(status[wrong[0]]), found[wrong[0]], fingers.a)
-    pairs = [found[:, i : i + 2] for i in range(3, 13, 2)]
-    return Grasp(found[:, 0], found[:, 1], found[:, 2], *pairs, found[:, 13], found[:, 14], found[:, 15].astype(int))
+        i = wrong[0]
+        raise failure(int(status[i]), (*found[i, :3], 0.0, 0.0, q_r[i], q_l[i]), fingers)
+    d, theta, N, M, torque = (found[:, i : i + 2] for i in range(3, 13, 2))
+    x, y, psi, U, K_psi, count = found[:, [0, 1, 2, 13, 14, 15]].T
+    return Grasp(x, y, psi, d, theta, N, M, torque, U, K_psi, count.astype(int))
 
 
-def failure(status: int, found: Array, a: float) -> HandError:
-    """Return the error of a pose that has no rest, from its status and what was found."""
+def joint_angles(q_r: Any, q_l: Any) -> tuple[Array, Array]:
+    """Return both joints' angles as flat arrays of one length [rad]; raises HandError for one that is no number."""
+    pair = np.broadcast_arrays(np.atleast_1d(np.asarray(q_r, float)), np.atleast_1d(np.asarray(q_l, float)))
+    for finger, angles in zip(FINGERS, pair, strict=True):
+        if not np.isfinite(angles).all():
+            raise HandError(f"finger {finger}: q = {angles[~np.isfinite(angles)][0]} rad is not a finite number")
+    return np.ascontiguousarray(pair[0].ravel()), np.ascontiguousarray(pair[1].ravel())
+
+
+def failure(status: int, state: Sequence[float] | Array, f: Fingers) -> HandError:
+    """Return the error of a status for the pose and joints of a state: x, y, psi, two slides, q_r, q_l [SI]."""
     if status == RESTLESS:
-        return NoEquilibrium(
-            f"no equilibrium: Newton's method ends at psi = {np.degrees(found[2]):.3f} deg without one"
-        )
+        return NoEquilibrium(f"no equilibrium: Newton's method finds none near psi = {degrees(state[2]):.3f} deg")
+    if status == SLIDES:
+        return ContactLost(f"friction of ratio {f.mu:g} does not carry the object: it slides out of the fingers")
     i = (status - 1) % 2
-    d, theta = float(found[3 + i]), float(found[5 + i])
-    return refusal(f"finger {FINGERS[i]}", d, theta, deepest(a, theta))
+    d, theta, sigma = meet(f, 1.0 - 2.0 * i, state[5 + i], state[0], state[1], state[2])
+    if status in (LOST_R, LOST_L) and d > 0.0:
+        return ContactLost(
+            f"finger {FINGERS[i]}: the tip is {1e3 * sigma:.3f} mm along its face,"
+            f" which ends {0.5e3 * f.h:.3f} mm from its middle"
+        )
+    return refusal(f"finger {FINGERS[i]}", d, theta, deepest(f.a, theta))
 
 
 @kernel
-def rest_all(f: Fingers, q_r: Array, q_l: Array, found: Array) -> Array:
-    """Fill a row of found for each pose, see `rest`, and return the statuses."""
-    status = np.zeros(q_r.size, np.int64)
+def rest_all(f: Fingers, q_r: Array, q_l: Array, found: Array, status: Array) -> None:
+    """Fill a row of found and the status for each pose, see `rest`."""
     for i in range(q_r.size):
         status[i] = rest(f, q_r[i], q_l[i], found[i])
-    return status
 
 
 @lean

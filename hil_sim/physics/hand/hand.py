@@ -11,7 +11,7 @@ stays on its stand, `gripped` is False.
 """
 
 from collections.abc import Sequence
-from math import isinf
+from math import isinf, nan
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from hil_sim.physics.compiled import Array, prepare
 from hil_sim.physics.hand.fingertip import FINGERS, HandError
 from hil_sim.physics.hand.grasp import HELD, failure
 from hil_sim.physics.hand.numbers import HandNumbers, fingers_of, servo_of
+from hil_sim.physics.hand.rolling import NEW, WORK
 from hil_sim.physics.hand.servo import current
 from hil_sim.physics.hand.state import (
     ALONG,
@@ -40,7 +41,7 @@ from hil_sim.physics.hand.state import (
     Y,
     lying,
 )
-from hil_sim.physics.hand.still import creep, relax
+from hil_sim.physics.hand.still import creep
 
 
 class Hand:
@@ -52,7 +53,7 @@ class Hand:
         self.t = 0.0  # [s]
         self.state = lying(numbers.L, *q)
         self.read = np.zeros(READ)
-        self.found = np.zeros(16)
+        self.work = np.zeros(WORK)
 
     @property
     def q(self) -> Array:
@@ -173,7 +174,7 @@ def hand_of(numbers: HandNumbers, q: Sequence[float] = (0.0, 0.0)) -> Hand:
     """
     prepare(creep)
     hand = Hand(numbers, q)
-    _judge(hand, relax(hand.fingers, hand.state, hand.read, hand.found))
+    _judge(hand, creep(hand.fingers, hand.servo, nan, nan, 0.0, hand.state, hand.read, hand.work))
     return hand
 
 
@@ -205,14 +206,14 @@ def advance(hand: Hand, commands: Sequence[float], dt: float) -> None:
     if not 0.0 <= dt < np.inf:
         raise HandError(f"dt = {dt} s, must be a finite number of at least 0 s")
     if dt > 0.0:
-        _judge(hand, creep(hand.fingers, hand.servo, c_r, c_l, dt, hand.state, hand.read, hand.found))
+        _judge(hand, creep(hand.fingers, hand.servo, c_r, c_l, dt, hand.state, hand.read, hand.work))
         hand.t += dt
 
 
 def _judge(hand: Hand, status: int) -> None:
     """Raise what a kernel found wrong."""
     if status != HELD:
-        raise failure(status, hand.found, hand.fingers.a)
+        raise failure(status, hand.work[NEW:], hand.fingers)
 
 
 __all__ = ["Hand", "HandNumbers", "advance", "hand_of"]

@@ -1,30 +1,31 @@
 r"""A hand that moves slowly: the servos turn the joints, and the object is at rest between the tips at any moment.
 
-An object that is not gripped stays where it is, on a stand (ASSUMED), and the tips press on it there. It is gripped
-once both tips touch it and it finds a rest between them; where it no longer does, the stand has it again, where it is.
+An object that is not gripped stays where it is, on a stand (ASSUMED), and the tips press and roll on it there. It is
+gripped as soon as both tips touch it and it finds a rest between them that carries it; where it no longer does, the
+stand has it again, where it is.
 """
 
-import numpy as np
+from math import ceil
 
 from hil_sim.physics.compiled import Array, lean
-from hil_sim.physics.hand.fingertip import deepest, springs
-from hil_sim.physics.hand.geometry import meet, sweep
-from hil_sim.physics.hand.grasp import DEEP_R, HELD, LOST_L, LOST_R, rest
-from hil_sim.physics.hand.numbers import Fingers, Servo
+from hil_sim.physics.hand.fingertip import deepest
+from hil_sim.physics.hand.friction import slipped
+from hil_sim.physics.hand.geometry import meet
+from hil_sim.physics.hand.grasp import DEEP_R, HELD, LOST_L, LOST_R, SLIDES, rest
+from hil_sim.physics.hand.numbers import FRICTIONLESS, Fingers, Servo
+from hil_sim.physics.hand.press import press
+from hil_sim.physics.hand.rolling import FOUND, NEW, follow, stiffness
 from hil_sim.physics.hand.servo import drive
 from hil_sim.physics.hand.state import (
-    ALONG,
-    ENERGY,
     GRIPPED,
     JAM_R,
     LOAD,
-    MOMENT,
     MOTOR,
-    NORMAL,
     PSI,
     Q_L,
     Q_R,
     RATES,
+    SLIDE_R,
     STIFFNESS,
     THETA,
     D,
@@ -32,63 +33,113 @@ from hil_sim.physics.hand.state import (
     Y,
 )
 
-STEP = 2.5e-4  # [s] a sixtieth of a servo's time constant
+STEP = 5e-4  # [s] a thirtieth of a servo's time constant
 
 
 @lean
-def creep(f: Fingers, servo: Servo, c_r: float, c_l: float, dt: float, state: Array, read: Array, found: Array) -> int:
-    """Advance servos and object by dt [s] under the commands [rad]; return HELD or what is wrong."""
-    count = max(1, int(np.ceil(dt / STEP - 1e-9)))
+def creep(f: Fingers, servo: Servo, c_r: float, c_l: float, dt: float, state: Array, read: Array, work: Array) -> int:
+    r"""Advance servos and object by dt with the object at rest at any moment.
+
+    Parameters
+    ----------
+    f : Fingers
+        Numbers of the fingers [SI]
+    servo : Servo
+        Numbers of a servo [SI]
+    c_r : float
+        Angle that the right servo is told to go to, NaN: limp [rad]
+    c_l : float
+        Angle that the left servo is told to go to, NaN: limp [rad]
+    dt : float
+        Time [s]
+    state : array (17,)
+        State of the hand, changed in place [SI]
+    read : array (16,)
+        What can be read of it [SI]
+    work : array (44,)
+        Workspace of `rolling`
+
+    Returns
+    -------
+    int
+        HELD, or what is wrong
+    """
+    count = max(1, ceil(dt / STEP - 1e-9))
     for _ in range(count):
-        turn(servo, 0, c_r, dt / count, state, read)
-        turn(servo, 1, c_l, dt / count, state, read)
-        status = relax(f, state, read, found)
+        q_r = turn(servo, 0, c_r, dt / count, state, read)
+        q_l = turn(servo, 1, c_l, dt / count, state, read)
+        status = relax(f, q_r, q_l, state, read, work)
         if status != HELD:
             return status
     return HELD
 
 
 @lean
-def turn(servo: Servo, i: int, c: float, h: float, state: Array, read: Array) -> None:
-    """Turn joint i by its servo for a step h [s] under the load of the moment."""
+def turn(servo: Servo, i: int, c: float, h: float, state: Array, read: Array) -> float:
+    """Let the servo of joint i act for h [s] against the load of the moment; return the new angle [rad]."""
     acceleration, read[MOTOR + i] = drive(servo, c, state[Q_R + i], state[RATES + Q_R + i], read[LOAD + i])
     state[RATES + Q_R + i] = 0.0 if state[JAM_R + i] > 0.0 else state[RATES + Q_R + i] + h * acceleration
-    state[Q_R + i] += h * state[RATES + Q_R + i]
+    angle: float = state[Q_R + i] + h * state[RATES + Q_R + i]
+    return angle
 
 
 @lean
-def relax(f: Fingers, state: Array, read: Array, found: Array) -> int:
-    """Let the object come to rest at the present angles and read forces; return HELD or what is wrong."""
-    touching = press(f, state, read)
-    if touching:
-        status = rest(f, state[Q_R], state[Q_L], found)
-        if status not in (HELD, LOST_R, LOST_L):
+def relax(f: Fingers, q_r: float, q_l: float, state: Array, read: Array, work: Array) -> int:
+    """Turn the joints, let the object come to rest and read the forces; return HELD or what is wrong."""
+    read[STIFFNESS] = 0.0
+    if state[GRIPPED] > 0.0:
+        status = hold(f, q_r, q_l, state, read, work)
+        if status not in (HELD, LOST_R, LOST_L, SLIDES):
             return status
         state[GRIPPED] = 1.0 if status == HELD else 0.0
-        if status == HELD:
-            for i in range(3):
-                state[X + i] = found[i]
-            press(f, state, read)
-            read[STIFFNESS] = found[14]
-    else:
-        state[GRIPPED] = 0.0
-    for i in range(2):
-        if read[D + i] > 0.0 and not read[D + i] <= deepest(f.a, read[THETA + i]):
-            found[3 + i], found[5 + i] = read[D + i], read[THETA + i]
-            return DEEP_R + i
-    return HELD
+    if state[GRIPPED] == 0.0 and lie(f, q_r, q_l, state):
+        state[GRIPPED] = 1.0 if hold(f, q_r, q_l, state, read, work) == HELD else 0.0
+    press(f, state, read)
+    return within(f, state, read, work)
 
 
 @lean
-def press(f: Fingers, state: Array, read: Array) -> bool:
-    """Read what the tips do to the object at its place and to the joints; return whether both touch it."""
-    read[ENERGY] = read[STIFFNESS] = 0.0
+def hold(f: Fingers, q_r: float, q_l: float, state: Array, read: Array, work: Array) -> int:
+    """Turn the joints with the object between the tips, if it finds a rest; return HELD or what is wrong."""
+    if f.contact != FRICTIONLESS:
+        status = follow(f, q_r, q_l, state, work)
+        read[STIFFNESS] = stiffness(work) if status == HELD else 0.0
+        return status
+    found = work[FOUND:]
+    status = rest(f, q_r, q_l, found)
+    for i in range(3):
+        work[NEW + i] = found[i]
+    work[NEW + Q_R], work[NEW + Q_L] = q_r, q_l
+    if status == HELD:
+        read[STIFFNESS] = found[14]
+        for i in range(7):
+            state[i] = work[NEW + i]
+    return status
+
+
+@lean
+def lie(f: Fingers, q_r: float, q_l: float, state: Array) -> bool:
+    """Turn the joints with the object on the stand, on which the tips roll; return whether both touch it."""
+    touching = 0
     for i in range(2):
-        s, q, psi = 1.0 - 2.0 * i, state[Q_R + i], state[PSI]
-        d, theta, _ = meet(f, s, q, state[X], state[Y], psi)
-        U, N, M, T, _, _, _, _, _, _ = springs(f.b, f.E, f.k, max(d, 0.0), theta, 0.0)
-        dx, dy = sweep(f, s, q)
-        read[D + i], read[THETA + i], read[NORMAL + i], read[MOMENT + i], read[ALONG + i] = d, theta, N, M, 0.0 * T
-        read[LOAD + i] = N * s * (np.cos(psi) * dx + np.sin(psi) * dy) + M
-        read[ENERGY] += U
-    return bool(read[D] > 0.0 and read[D + 1] > 0.0)
+        s, q = 1.0 - 2.0 * i, q_r if i == 0 else q_l
+        d_0, theta_0, sigma_0 = meet(f, s, state[Q_R + i], state[X], state[Y], state[PSI])
+        d, theta, sigma = meet(f, s, q, state[X], state[Y], state[PSI])
+        stuck = state[SLIDE_R + i] + s * (sigma - sigma_0) + (f.a - 0.5 * (d_0 + d)) * (theta - theta_0)
+        state[Q_R + i], state[SLIDE_R + i] = q, 0.0
+        if d > 0.0:
+            touching += 1
+            if f.contact != FRICTIONLESS:
+                state[SLIDE_R + i], _, _, _ = slipped(f, d, theta, stuck)
+    return touching == 2
+
+
+@lean
+def within(f: Fingers, state: Array, read: Array, work: Array) -> int:
+    """Return HELD, or which tip is pressed to the edge of its plate."""
+    for i in range(2):
+        if not read[D + i] <= deepest(f.a, read[THETA + i]):
+            for j in range(7):
+                work[NEW + j] = state[j]
+            return DEEP_R + i
+    return HELD
