@@ -46,8 +46,8 @@ class FingersPlant:
 
     @property
     def joint_current_a(self) -> Array:
-        """Currents of the servos, while they have power [A]."""
-        return self._hand.current
+        """Currents of the servos; ASSUMED: one that is not driven takes none [A]."""
+        return np.where(np.isnan(self._commands), 0.0, self._hand.current)
 
     @property
     def object_deg(self) -> float | None:
@@ -145,7 +145,7 @@ class FingersPlant:
             "moment_nmm": float(1e3 * hand.M[index]),
             "tangential_n": float(hand.T[index]),
             "torque_nm": float(hand.motor[index]),
-            "current_a": float(hand.current[index]),
+            "current_a": float(self.joint_current_a[index]),
             "limp": bool(np.isnan(command)),
         }
 
