@@ -67,7 +67,7 @@ class Limbs:
 
     def busy(self, now_ms: int) -> bool:
         """Return whether an order is still being carried out; holding is none."""
-        return self.joints.moving(now_ms) or (self.orient is not None and self.orient.active)
+        return self.joints.moving(now_ms) or (self.orient is not None and self.orient.busy(now_ms))
 
     def all_off(self) -> None:
         """Let every joint go limp."""

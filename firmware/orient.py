@@ -60,6 +60,10 @@ class Orient:
         """Regulate no more; the joints hold where they are, up to the end of the order."""
         self.active = False
 
+    def busy(self, now_ms: int) -> bool:
+        """Return whether its time is not over yet."""
+        return self.active and now_ms - self._until_ms < 0
+
     def update(self, now_ms: int) -> None:
         """Take a new frame into account; end when it is time, or when there is no camera any more."""
         if not self._camera.known:
@@ -73,7 +77,6 @@ class Orient:
 
     def _integrate(self, now_ms: int) -> None:
         passed_ms = min(now_ms - self._frame_ms, FRAME_MAX_MS)
-        self._frame_ms = now_ms
         self._frame_ms = now_ms
         error = self._target_centideg - self._camera.centideg
         error = max(-ERROR_MAX_CENTIDEG, min(ERROR_MAX_CENTIDEG, error))
