@@ -27,7 +27,6 @@ WITHIN_US = STEP_US + 2_500
 SLOT_US = 4_000  # a pause shorter than this is the firmware measuring, no pause
 TRIP_MARGIN_K = 10.0
 ANGLE_MARGIN_DEG = 0.05  # rounding of the pulses' width
-LIMP_US = 100_000  # after so long without a pulse a joint is limp, and may stand anywhere
 HEAT_MARGIN = 0.05
 
 Spell = tuple[int, int]
@@ -66,6 +65,7 @@ class Run:
     energy_j: Sequence[tuple[int, Sequence[float]]]  # of each channel up to that time
     excuses: Sequence[tuple[int, Excuse]] = field(default_factory=tuple)  # each from its time on
     angles: Sequence[Sequence[tuple[int, float]]] = ()  # of each joint: from when on it is told which angle [deg]
+    found: Sequence[dict[int, float]] = ()  # and where it stood [deg] when it began to be driven, by the time
 
 
 def broken(run: Run) -> Iterator[str]:
@@ -143,9 +143,11 @@ def _path(run: Run, joint: int) -> Iterator[str]:
     for at_us, deg in run.angles[joint]:
         if not low - ANGLE_MARGIN_DEG <= deg <= high + ANGLE_MARGIN_DEG:
             yield f"told {deg:.2f} deg at {at_us / 1e6:.4f} s, its range is {low:g} to {high:g}"
-    for (before_us, before), (at_us, deg) in pairwise(run.angles[joint]):
+    found = run.found[joint]
+    for (before_us, before), (at_us, deg) in pairwise([(0, 0.0), *run.angles[joint]]):
+        before_us, before = (at_us, found[at_us]) if at_us in found else (before_us, before)
         most = speed * (at_us - before_us + 2 * STEP_US) * 1e-6
-        if at_us - before_us < LIMP_US and abs(deg - before) > most + ANGLE_MARGIN_DEG:
+        if abs(deg - before) > most + ANGLE_MARGIN_DEG:
             yield f"told to turn by {abs(deg - before):.2f} deg at {at_us / 1e6:.4f} s, at most {most:.2f}"
 
 

@@ -12,7 +12,9 @@ class Pulses:
     def __init__(self, bench: Bench, pin: int) -> None:
         self.history: list[tuple[int, float]] = []  # from when on it was driven: 1.0, or not: 0.0
         self.widths: list[tuple[int, float]] = []  # [us], while it was driven
+        self.found: dict[int, float] = {}  # where the joint stood [deg] when it began to be driven, by the time
         self._bench = bench
+        self._servo = bench.board.servos[pin]
         self._width_us = 0.0
         pulses = bench.board.pulses
         watcher = pulses._watchers[pin]
@@ -28,10 +30,18 @@ class Pulses:
         """Take down what holds from now on."""
         now_us = self._bench.clock.now_us
         live = self._bench.board.powered and LIVE_US[0] <= self._width_us <= LIVE_US[1]
-        if live != bool(self.history and self.history[-1][1]):
+        was_live = bool(self.history and self.history[-1][1])
+        if live != was_live:
             self.history.append((now_us, float(live)))
-        if live and (not self.widths or self.widths[-1][1] != self._width_us):
+        if live and not was_live:
+            self._find(now_us)
+        if live and not (was_live and self.widths[-1][1] == self._width_us):
             self.widths.append((now_us, self._width_us))
+
+    def _find(self, now_us: int) -> None:
+        joints = self._bench._joints
+        if joints is not None and self._servo in joints._servos:
+            self.found[now_us] = float(self._bench.plant.joint_deg[joints._servos.index(self._servo)])
 
     def angles(self, limits: ServoLimits) -> list[tuple[int, float]]:
         """Return from when on it was told which angle [deg]."""

@@ -68,7 +68,8 @@ class Witness:
         spells = [spells_of(history, now_us) for history in driven]
         energies = [*self._energy_j, (now_us, bench._energy_j.tolist())]
         angles = [each.angles(profile.servo) for each in pulses]
-        return Run(profile, ledger, spells, bench._peak_degc.tolist(), energies, self._excuses, angles)
+        found = [each.found for each in pulses]
+        return Run(profile, ledger, spells, bench._peak_degc.tolist(), energies, self._excuses, angles, found)
 
     def _at_line(self) -> None:
         """Listen at the device's end of the line."""
