@@ -4,13 +4,14 @@ from dataclasses import replace
 
 import pytest
 
+from host.drivenreport import coils
 from host.errors import Mismatch
 from host.gait.compiler import compile_script
 from host.gait.script import loads
 from host.profile import read_profile
 from host.recording import Recording
 from host.records import Event, Telemetry
-from host.report import Facts, Took, coils, lines, report
+from host.report import Facts, Took, lines, report
 from host.run import Ending
 from tests.fake_robot import PROFILE
 

@@ -10,12 +10,12 @@ import click
 
 from host.cli.options import given_key, if_lost_options, json_option, robot_option
 from host.cli.output import emit, note
+from host.drivenreport import driven
 from host.errors import BadRequest
 from host.linereport import interruption, line_lines
 from host.link import open_link
 from host.log import LogWriter
 from host.records import as_json as fields_of
-from host.report import coils
 from host.robot import Robot
 from host.run import TELEMETRY_MS, Ending, IfLost, Keeper, watch
 
@@ -69,7 +69,7 @@ def _fields(face: Robot, keeper: Keeper) -> Fields:
     recording, info = keeper.recording, face.info()
     return {
         **{name: info[name] for name in ("robot", "firmware", "protocol", "dictionary", "session")},
-        "coils": coils(recording, face.profile),
+        **{name: rows for name, rows in driven(recording, face.profile).items() if name != "energy_is"},
         "events": [fields_of(event) for event in recording.events],
         "link": face.statistics(),
         "interruptions": [interruption(each, recording) for each in face.interruptions()],
