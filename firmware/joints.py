@@ -113,7 +113,8 @@ class Joints:
             limits = self._limits
             start_centideg = min(max(self.measured_centideg[joint], limits.least_centideg), limits.most_centideg)
             way_centideg = abs(target_centideg - start_centideg)
-            over_ms = max(over_ms, way_centideg * 1000 // limits.slew_centideg_per_s + 1)
+            slew = limits.slew_centideg_per_s
+            over_ms = max(over_ms, (way_centideg * 1000 + slew - 1) // slew)
         self._start_centideg[joint] = start_centideg
         self._target_centideg[joint] = target_centideg
         self._begin_ms[joint] = now_ms

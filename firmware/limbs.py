@@ -46,6 +46,7 @@ class Limbs:
     def move(self, mask: int, target_centideg: int, over_ms: int, hold_ms: int, now_ms: int) -> None:
         """Move joints as ordered, or raise Refused; a loop that held them ends."""
         self.joints.update(now_ms)  # an order sets out from where the last one has come to by now
+        self.joints.update(now_ms)
         self.joints.move(mask, target_centideg, over_ms, hold_ms, now_ms)
         if self.orient:
             self.orient.cancel()
@@ -54,6 +55,7 @@ class Limbs:
         """Regulate the object's angle, or raise Refused."""
         if not self.orient:
             raise Refused(codes.NO_CAMERA)
+        self.joints.update(now_ms)
         self.joints.update(now_ms)
         self.orient.begin(target_centideg, time_ms, hold_ms, now_ms)
 

@@ -132,6 +132,27 @@ def test_a_wait_for_an_angle_ends_when_the_joint_has_come_by():
     assert max(bare.told[0]) == pytest.approx(1000, abs=30)  # a count of the potentiometer, and two steps
 
 
+def test_moves_that_follow_each_other_make_one_line():
+    made = compiled(f"{HOME}\nmove R to 10 deg over 500 ms\nmove R to 20 deg over 500 ms", profile=hand_robot())
+    bare = Bare(made.code)
+
+    bare.run()
+
+    assert bare.told[0][-200:] == list(range(10, 2001, 10))
+
+
+@pytest.mark.parametrize(
+    ("hold_ms", "sound", "falls"), [(4995, True, False), (5005, False, True)]
+)
+def test_the_checker_knows_how_long_a_joint_holds(hold_ms, sound, falls):
+    made = compiled(f"{HOME}\nwait {hold_ms} ms\n{HOME}", profile=hand_robot())
+    bare = Bare(made.code)
+
+    bare.run()
+
+    assert (check(made).sound, bare.fallen) == (sound, falls)
+
+
 def test_a_script_that_the_checker_refuses_for_its_speed_the_robot_refuses_too():
     body = "move R to -20 deg over 1 s\nmove R to {} deg over 300 ms"
     made = [compiled(body.format(angle), profile=hand_robot()) for angle in (9, 11)]

@@ -32,8 +32,8 @@ class JointTrial:
             return self.least_centideg, self.most_centideg
         if isinstance(order, Orient):
             return self.low_centideg, self.high_centideg
-        passed = (now_ms - self.begin_ms - STEP_MS, most_ms - self.begin_most_ms + STEP_MS)
-        shares = [min(max(passed_ms, 0), order.time_ms) for passed_ms in passed]
+        passed = (now_ms - self.begin_ms, most_ms - self.begin_most_ms)
+        shares = [min(passed_ms, order.time_ms) for passed_ms in passed]
         ways = [(start, (order.target_centideg - start) * share, order.time_ms)
                 for start in (self.low_centideg, self.high_centideg) for share in shares]  # fmt: skip
         return min(start + way // time for start, way, time in ways), max(

@@ -1,8 +1,7 @@
 """The joints in the worst case of a plan: how far and how fast they are told to turn, how long they are left alone.
 
 Where a joint stands is known from its last order; while a wait may cut its way short it is anywhere on the part that is
-left. At the start it is taken to be anywhere in its range, after an orient anywhere within the swing of that. The
-firmware brings a joint forward once in each control step, so that it may be one step off.
+left. At the start it is taken to be anywhere in its range, after an orient anywhere within the swing of that.
 """
 
 from __future__ import annotations
