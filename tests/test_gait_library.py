@@ -10,6 +10,7 @@ from protocol.verify import check_code
 from tests.gait_scripts import ROOT, circular, profile_of
 
 GAITS = sorted((ROOT / "gaits").glob("*.gait"))
+BEGINNINGS = {"circular": "# The circular robot ", "sphere": "# The spherical robot ", "fingers": "# The soft fingers "}
 
 
 def made(name, *overrides):
@@ -33,7 +34,7 @@ def test_every_gait_is_sound_for_the_robot_it_names(path):
     compiled = compile_script(script, profile)
 
     assert check(compiled).diagnostics == ()
-    check_code(compiled.code, len(profile.labels), profile.program.bytes_max)
+    check_code(compiled.code, len(profile.coil_labels), profile.program.bytes_max, len(profile.joint_labels))
 
 
 @pytest.mark.parametrize("path", GAITS, ids=lambda path: path.stem)
@@ -41,7 +42,7 @@ def test_every_gait_says_what_it_does_below_its_first_line(path):
     lines = path.read_text(encoding="utf-8").splitlines()
 
     assert lines[0] == "gait 1"
-    assert lines[1].startswith("# The circular robot " if "circular" in path.stem else "# The spherical robot ")
+    assert lines[1].startswith(BEGINNINGS[path.stem.split("-")[0]])
 
 
 def test_the_crawl_holds_a_then_walks_once_around_the_ring():

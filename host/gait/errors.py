@@ -262,8 +262,8 @@ ROWS = (
         "Stay within the range of the robot's profile."),
     Row("E318", REFUSED,
         "A joint would turn faster than it may.",
-        "Give the move more time. Where a joint begins is not known at the start and after an orient: there it is "
-        "taken to be at the farther end of its range."),
+        "Give the move more time. Where a joint stands is not known at the start and after an orient: it is taken to "
+        "be at the farther end of its range, or of its swing."),
     Row("E319", REFUSED,
         "A joint would be without an order for longer than it holds, and go limp.",
         "Move it again in time, if only to the angle where it is."),
