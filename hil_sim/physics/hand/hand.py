@@ -18,6 +18,7 @@ import numpy as np
 from hil_sim.physics.compiled import Array, prepare
 from hil_sim.physics.hand.fingertip import FINGERS, HandError
 from hil_sim.physics.hand.grasp import HELD, failure
+from hil_sim.physics.hand.motion import ROWS, STEP, longest_step, march
 from hil_sim.physics.hand.numbers import HandNumbers, fingers_of, servo_of
 from hil_sim.physics.hand.rolling import NEW, WORK
 from hil_sim.physics.hand.servo import current
@@ -34,6 +35,7 @@ from hil_sim.physics.hand.state import (
     RATES,
     READ,
     SLIDE_R,
+    STATE,
     STIFFNESS,
     THETA,
     D,
@@ -53,7 +55,8 @@ class Hand:
         self.t = 0.0  # [s]
         self.state = lying(numbers.L, *q)
         self.read = np.zeros(READ)
-        self.work = np.zeros(WORK)
+        self.work, self.rows = np.zeros(WORK), np.zeros((ROWS, STATE))
+        self.step = longest_step(self.fingers) if numbers.motion == "dynamic" else STEP  # of the motion [s]
 
     @property
     def q(self) -> Array:
@@ -206,7 +209,12 @@ def advance(hand: Hand, commands: Sequence[float], dt: float) -> None:
     if not 0.0 <= dt < np.inf:
         raise HandError(f"dt = {dt} s, must be a finite number of at least 0 s")
     if dt > 0.0:
-        _judge(hand, creep(hand.fingers, hand.servo, c_r, c_l, dt, hand.state, hand.read, hand.work))
+        given = (hand.fingers, hand.servo, c_r, c_l, dt)
+        if hand.numbers.motion == "dynamic":
+            status = march(*given, hand.step, hand.state, hand.read, hand.work, hand.rows)
+        else:
+            status = creep(*given, hand.state, hand.read, hand.work)
+        _judge(hand, status)
         hand.t += dt
 
 

@@ -5,16 +5,16 @@ gripped as soon as both tips touch it and it finds a rest between them that carr
 stand has it again, where it is.
 """
 
-from math import ceil
+from math import ceil, cos, sin
 
 from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.hand.fingertip import deepest
 from hil_sim.physics.hand.friction import slipped
 from hil_sim.physics.hand.geometry import meet
-from hil_sim.physics.hand.grasp import DEEP_R, HELD, LOST_L, LOST_R, SLIDES, rest
+from hil_sim.physics.hand.grasp import DEEP_R, HELD, LOST_L, LOST_R, SLIDES, correction, rest
 from hil_sim.physics.hand.numbers import FRICTIONLESS, Fingers, Servo
 from hil_sim.physics.hand.press import press
-from hil_sim.physics.hand.rolling import FOUND, NEW, follow, stiffness
+from hil_sim.physics.hand.rolling import FOUND, NEW, OLD, SHEARED, balance, follow, stiffness
 from hil_sim.physics.hand.servo import drive
 from hil_sim.physics.hand.state import (
     GRIPPED,
@@ -118,6 +118,18 @@ def hold(f: Fingers, q_r: float, q_l: float, state: Array, read: Array, work: Ar
 
 
 @lean
+def resistance(f: Fingers, state: Array, work: Array) -> float:
+    """Return the rotational stiffness of a grip where it is, the object free to shift [N m/rad]."""
+    if f.contact == FRICTIONLESS:
+        across = state[X] * cos(state[PSI]) + state[Y] * sin(state[PSI])
+        return correction(f, state[Q_R], state[Q_L], across, state[PSI])[2]
+    for i in range(7):
+        work[OLD + i] = work[NEW + i] = state[i]
+    balance(f, work)
+    return stiffness(work)
+
+
+@lean
 def lie(f: Fingers, q_r: float, q_l: float, state: Array) -> bool:
     """Turn the joints with the object on the stand, on which the tips roll; return whether both touch it."""
     touching = 0
@@ -130,7 +142,8 @@ def lie(f: Fingers, q_r: float, q_l: float, state: Array) -> bool:
         if d > 0.0:
             touching += 1
             if f.contact != FRICTIONLESS:
-                state[SLIDE_R + i], _, _, _ = slipped(f, d, theta, stuck)
+                most = 0.5 * SHEARED * d  # it does not come from the stand sheared
+                state[SLIDE_R + i] = max(-most, min(most, slipped(f, d, theta, stuck)[0]))
     return touching == 2
 
 
