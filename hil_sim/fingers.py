@@ -46,8 +46,8 @@ class FingersPlant:
 
     @property
     def joint_current_a(self) -> Array:
-        """Currents of the servos; ASSUMED: one that is not driven takes none [A]."""
-        return np.where(np.isnan(self._commands), 0.0, self._hand.current)
+        """Currents of the servos while they have power [A]."""
+        return self._hand.current
 
     @property
     def object_deg(self) -> float | None:
@@ -60,11 +60,12 @@ class FingersPlant:
 
     def advance(self, duration_us: int, coil_power_w: Array) -> None:
         """Let time pass; OutOfModel when a tip is pressed beyond what its model is valid for."""
-        told = [nan if dead else command for command, dead in zip(self._commands, self._dead, strict=True)]
+        driven = [nan if dead else command for command, dead in zip(self._commands, self._dead, strict=True)]
         try:
-            advance(self._hand, told, duration_us * 1e-6)
+            advance(self._hand, driven, duration_us * 1e-6)
         except HandError as error:
-            raise OutOfModel(f"the bench ends at {self._hand.t:.2f} s of the fingers' time, {error}") from error
+            told = f"the fingers left what their model is valid for at {self._hand.t:.2f} s, {error}"
+            raise OutOfModel(told) from error
         np.maximum(self._torque_peak, np.abs(self._hand.motor), out=self._torque_peak)
 
     def jam(self, label: str, jammed: bool = True) -> None:
