@@ -75,7 +75,7 @@ def text() -> str:
 
 def messages() -> Iterator[Message]:
     """Yield every frame: the stop, then each message in each of its ways, by its number."""
-    words = "All coils off, on every robot, at once. Whoever sends it, whoever hears it."
+    words = "Everything off, on every robot, at once. Whoever sends it, whoever hears it."
     yield Message(canbus.STOP_IDENTIFIER, "stop", len(canbus.STOP_DATA), "host", words, (_word(canbus.STOP_DATA),))
     for row in sorted(rows(), key=lambda row: row.number):
         for way in ("to", "from") if row.ways == "both" else (row.ways,):

@@ -139,7 +139,7 @@ def rows() -> list[Row]:
 
 
 def variables() -> list[Place]:
-    """Return every variable of telemetry, at its number; one whose letter ends in `*` has a value for each coil."""
+    """Return every variable of telemetry, at its number; behind its letter stands what it has several values for."""
     words, names = meanings.read(), enums()
     return [_place(f"var.{row.name}", row, 0, words, names) for row in VARIABLES]
 

@@ -35,10 +35,10 @@ SOURCES = (
 )
 STATES = {
     "boot": "for less than a control step after its start",
-    "idle": "coil supply open, no lease",
+    "idle": "supply of coils and joints open, no lease",
     "armed": "a session holds the lease and may give orders",
     "running": "a program runs",
-    "tripped": "latched after a stop or fault: all coils off until `clear`",
+    "tripped": "latched after a stop or fault: all coils off and joints limp until `clear`",
 }
 
 
@@ -130,6 +130,10 @@ def _session(table: Table) -> dict[str, object]:
         "other_version": codes.OTHER_VERSION,
         "lease_expired": codes.LEASE_EXPIRED,
         "busy": f"R15, {codes.BUSY}",
+        "slew_limit": codes.SLEW_LIMIT,
+        "no_camera": codes.NO_CAMERA,
+        "not_held": codes.NOT_HELD,
+        "camera": codes.CAMERA,
         "keepalive_ms": session.KEEPALIVE_US // 1000,
         "ask_ms": handshake.ASK_MS,
         "stop_again_ms": stopping.AGAIN_US // 1000,
@@ -182,7 +186,7 @@ def op_table(table: Table) -> str:
 
 def _telemetry(table: Table) -> dict[str, object]:
     found = [
-        (str(number), f"`{place.name}`", place.type + ("*" if place.letter.endswith("*") else ""), words_of(place))
+        (str(number), f"`{place.name}`", place.type + place.letter[1:], words_of(place))
         for number, place in enumerate(variables())
     ]
     return {
@@ -278,7 +282,7 @@ def bounds(table: Table) -> str:
         ("program", "as the profile says (program.bytes_max)"),
         ("lease", "as the profile says (session.lease_max_ms)"),
         ("CAN bodies under way in a receiver", f"{canbus.UNDER_WAY_MAX}"),
-        ("time from the stop's last byte to coils off", f"one control step, {STEP_MS} ms"),
+        ("time from the stop's last byte to coils off, joints limp", f"one control step, {STEP_MS} ms"),
         ("frames lost to a burst of damage", "those that it hit, and at most the one after"),
     ]
     return table(("", "at most"), found)

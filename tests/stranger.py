@@ -84,8 +84,8 @@ class Words:
         for number, name, fields in re.findall(r"^(\d+) (\w+)(.*)$", text, re.MULTILINE):
             self.kinds[name] = int(number)
             self.fields[name] = re.findall(r"(\w+):(\w)", re.sub(r"\[.*?\]", "", fields))
-        for number, name, letter, star in re.findall(r"^var (\d+) (\w+):(\w)(\*?)", text, re.MULTILINE):
-            self.variables[name] = int(number), letter, star
+        for number, name, letter, each in re.findall(r"^var (\d+) (\w+):(\w)([*+@]?)", text, re.MULTILINE):
+            self.variables[name] = int(number), letter, each
         self.names = {kind: name for name, kind in self.kinds.items()}
 
     def pack(self, name: str, values: dict) -> bytes:
@@ -101,12 +101,14 @@ class Words:
             layout = layout[:-1] + f"{len(payload) - struct.calcsize(layout[:-1])}s"
         return dict(zip((field for field, _ in self.fields[name]), struct.unpack(layout, payload), strict=True))
 
-    def unpack_record(self, values: bytes, names: list[str], coils: int) -> dict:
-        """Return the variables in a record of telemetry; one that each coil has is a list."""
+    def unpack_record(self, values: bytes, names: list[str], coils: int, joints: int = 0, cameras: int = 0) -> dict:
+        """Return the variables in a record of telemetry; one of which there may be several, or none, is a list."""
+        counts = {"": 1, "*": coils, "+": joints, "@": cameras}
         kinds = [self.variables[name] for name in names]
-        layout = "<" + "".join(letter * (coils if star else 1) for _, letter, star in kinds)
+        layout = "<" + "".join(letter * counts[each] for _, letter, each in kinds)
         flat = iter(struct.unpack(layout, bytes(byte ^ 0x55 for byte in values)))
-        return {name: list(islice(flat, coils)) if self.variables[name][2] else next(flat) for name in names}
+        found = [(name, list(islice(flat, counts[self.variables[name][2]]))) for name in names]
+        return {name: several if self.variables[name][2] else several[0] for name, several in found}
 
 
 class Frames:

@@ -41,7 +41,7 @@ class OnBench(stranger.Stranger):
         self.end.exchange()
         self.bench.run(TURN_S)
         self.end.exchange()
-        self.heated_s.update({label: TURN_S for label in "ABCDEFGH" if self.bench.coil(label).duty})
+        self.heated_s.update({coil.label: TURN_S for coil in self.bench.coils if self.bench.coil(coil.label).duty})
         super().turn()
 
     def write(self, data):
@@ -77,6 +77,14 @@ def closed():
 def robot(closed):
     closed.open()
     return closed
+
+
+@pytest.fixture
+def fingers():
+    link = open_link("sim:fingers")
+    with Pty() as pty, closing(OnBench(link.bench, pty)) as robot:
+        robot.open()
+        yield robot
 
 
 @pytest.fixture
@@ -157,6 +165,23 @@ def test_records_of_telemetry_come_at_their_period(robot):
     assert record["state"] == 1
     assert record["supply_mv"] == pytest.approx(2000, abs=20)
     assert record["coil_decidegc"] == pytest.approx([250] * 8, abs=20)
+
+
+def test_joints_move_hold_and_tell_of_themselves_and_of_the_object(fingers):
+    names = ["joint_centideg", "commanded_centideg", "coil_decidegc", "object_centideg", "state"]
+    fingers.subscribe(0, 50, names)
+    fingers.arm()
+    fingers.order("move", joints=0b01, target_centideg=300, over_ms=200, hold_ms=1000)
+    fingers.order("move", joints=0b10, target_centideg=-300, over_ms=200, hold_ms=1000)
+    fingers.pass_s(0.6)
+
+    values = [values for name, values in fingers.heard if name == "telemetry"][-1]["values"]
+    record = fingers.words.unpack_record(values, names, coils=0, joints=2, cameras=1)
+
+    assert record["joint_centideg"] == pytest.approx([300, -300], abs=40)
+    assert record["commanded_centideg"] == [300, -300]
+    assert (record["coil_decidegc"], record["state"]) == ([], 2)
+    assert record["object_centideg"] == pytest.approx([0], abs=20)
 
 
 def test_a_program_runs_to_its_end(robot):
