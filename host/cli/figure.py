@@ -31,10 +31,11 @@ from host.view import (
 
 
 class Run(NamedTuple):
-    """One run that a figure is drawn from: the script, and what is added to its address on the bench."""
+    """One run that a figure is drawn from: the script, what is added to its address on the bench, its parameters."""
 
     script: str
     settings: str = ""
+    params: tuple[str, ...] = ()
 
 
 class Figure(NamedTuple):
@@ -46,6 +47,10 @@ class Figure(NamedTuple):
 
 
 FINGERS = "fingers-figure13.gait"
+EXACT = "&set=servos.dead_band_us:0"  # so that the grip is that of the script
+SLOWLY = (
+    "time=10s",
+)  # so that it stays so: servos that take their pulses 5 ms apart differ by that much of a movement
 FIGURES = {
     "3": Figure(
         (Run("circular-poses.gait"),), draw_poses, "the circular robot with coils A, C, E and G contracted in turn"
@@ -58,7 +63,7 @@ FIGURES = {
     "13": Figure((Run(FINGERS),), draw_grasp, "the energy of their tips and both displacements"),
     "14": Figure((Run("fingers-experiment.gait"),), draw_tilting, "a cube that tilts against the swing of two fingers"),
     "nail": Figure(
-        (Run(FINGERS, "?tip=nail"), Run(FINGERS, "?tip=radial")),
+        (Run(FINGERS, "?tip=nail" + EXACT, SLOWLY), Run(FINGERS, "?tip=radial" + EXACT, SLOWLY)),
         draw_nail,
         "the paper's tip against one whose energy depends on the displacement alone",
     ),
@@ -92,7 +97,7 @@ def recorded(wanted: Run, robot: str | None) -> Recording:
         face.connect()
         keeper.know(face.profile.parts)
         keeper.recording.title = f"{wanted.script} on {address}"
-        compiled, _ = proven(tree, face.profile)
+        compiled, _ = proven(tree, face.profile, wanted.params)
         ending = run(face, compiled.program, lambda stage, done: None)
     error = ending.error()
     if error:

@@ -69,7 +69,7 @@ def told(recording: Recording, shown: list[int]) -> list[list[str]]:
 
 def angle(deg: float, decimals: int, sign: str = "") -> str:
     """Return an angle as it is printed, zero without a sign."""
-    rounded = round(float(deg), decimals)
+    rounded = round(float(deg), decimals) + 0.0
     return f"{rounded:{sign if rounded else ''}.{decimals}f}°".replace("-", "\N{MINUS SIGN}")
 
 

@@ -22,9 +22,9 @@ TINTS = ("#f6c79d", "#a9cfe8")  # of the soft tips, in the order of the fingers
 SOLID, OBJECT = "#e7dcc6", COILS[2]  # what an object is filled with, and the colour of its angle
 LINE_LENGTH = 3.0  # of an object without height, of the tips' radius
 LINK_WIDTH, NAIL_WIDTH, JOINT_RADIUS = 0.14, 0.10, 0.13  # of the tips' radius
-WEDGE = 1.65  # how far the wedge of the object's turn reaches beyond half its height, of the tips' radius
+WEDGE, OF_CUBE = 1.65, 0.9  # how far the wedge of its turn reaches beyond half its height, of the tips' radius
 BASE_DROP = 0.30  # of the base below the joints, of the tips' radius
-ARROW_MM_PER_N = 0.25
+ARROW_MM_PER_N, LEAST_N = 0.25, 2.0  # a smaller force is no longer than the head of its arrow
 ARC = 60  # points of a hemisphere
 
 
@@ -109,8 +109,9 @@ def draw_hand(axes: Axes, scene: Scene, forces: bool = False) -> None:
 def draw_turn(axes: Axes, scene: Scene, times: float = 1.0) -> None:
     """Draw the object's turn from the upright as a wedge, so many times as large as it is."""
     body, radius = scene["object"], float(scene["tip_radius_mm"])
-    reach, deg = body["height_mm"] / 2 + WEDGE * radius, times * float(body["deg"])
-    over = 6.0 if body["width_mm"] > 0 else 1.5  # a plate stands before its wedge, a cube would hide it
+    wide, deg = body["width_mm"] > 0, times * float(body["deg"])
+    reach = body["height_mm"] / 2 + (OF_CUBE if wide else WEDGE) * radius
+    over = 6.0 if wide else 1.5  # a plate stands before its wedge, a cube would hide it
     foot, upright, turned = np.array(body["centre"]), unit(90.0), unit(90.0 + deg)
     axes.add_patch(Wedge(tuple(foot), reach, *sorted((90.0, 90.0 + deg)), fc=OBJECT, alpha=0.30, lw=0, zorder=over))
     axes.plot(*np.array([foot, foot + reach * upright]).T, color=INK, lw=0.5, ls=(0, (4, 2)), zorder=over + 0.1)
@@ -181,6 +182,8 @@ def _draw_object(axes: Axes, scene: Scene) -> None:
 
 def _draw_push(axes: Axes, scene: Scene, label: str) -> None:
     place, force = push(scene, label)
+    if np.hypot(*force) < LEAST_N:
+        return
     tail = place - ARROW_MM_PER_N * force
     style: Style = {"arrowstyle": "-|>", "mutation_scale": 5, "lw": 1.0, "color": INK, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", tuple(place), tuple(tail), arrowprops=style, zorder=7)

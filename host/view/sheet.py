@@ -14,6 +14,7 @@ from host.view.style import PAGE_MM, heat_scale, page
 LEFT_MM, RIGHT_MM, TOP_MM, BOTTOM_MM = 14.0, 3.0, 9.0, 9.0
 BAR_MM = 14.0  # to the right, for the colour bar
 GAP_MM = 5.0
+TITLE_LETTERS = 84  # a longer title is written smaller
 NAME_MM = 4.5  # a panel's letter and what it shows
 
 
@@ -24,7 +25,8 @@ class Sheet:
         self.figure = page(height_mm)
         self._height = height_mm
         self.y_mm = height_mm - TOP_MM
-        self.figure.text(LEFT_MM / PAGE_MM, 1 - 3.5 / height_mm, title, va="center", fontsize=8.5, weight="bold")
+        size = 8.5 * min(1.0, TITLE_LETTERS / max(1, len(title)))
+        self.figure.text(LEFT_MM / PAGE_MM, 1 - 3.5 / height_mm, title, va="center", fontsize=size, weight="bold")
 
     def axes(self, left_mm: float, width_mm: float, height_mm: float, share: Axes | None = None) -> Axes:
         """Return axes below the present height, which stays."""

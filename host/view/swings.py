@@ -14,6 +14,7 @@ from host.view.hand import side_of
 from host.view.instants import Numbers, scene_times
 
 LEAST_DEG = 0.5  # a swing
+LEAST_STEP_DEG = 0.01  # a movement from scene to scene
 BACK, STILL = 0.25, 0.02  # of the greatest swing: they have turned back; they stand
 
 
@@ -60,28 +61,31 @@ def turning(recording: Recording) -> list[int]:
             best, rising = i, float(np.sign(further))
     found.append(best)
     ends = zip(found, [*found[1:], len(swing)], strict=True)
-    return [_rest(swing, i, until, STILL * greatest) for i, until in ends if abs(swing[i]) > BACK * greatest]
+    return [_last(recording, swing, i, until) for i, until in ends if abs(swing[i]) > BACK * greatest]
 
 
 def parallel(recording: Recording) -> int:
-    """Return the last scene before the fingers close."""
+    """Return the last scene before the fingers close, at rest if they ever were."""
     grip = grip_deg(recording)
     closed = np.flatnonzero(grip > STILL * float(grip.max()))
-    return max(0, int(closed[0]) - 1) if len(closed) else 0
+    return resting(recording, 0, int(closed[0])) if len(closed) else 0
 
 
-def held(recording: Recording) -> Numbers:
-    """Return the scenes from the first swing on in which the fingers keep their grip; BadRequest without a swing."""
+def held(recording: Recording) -> list[int]:
+    """Return the scenes from the first swing to the last rest with that grip; BadRequest without a swing."""
     grip, begin = grip_deg(recording), gripping(recording)
-    kept = np.flatnonzero(np.abs(grip - grip[begin]) < STILL * abs(grip[begin]))
-    return kept[kept >= begin]
+    gone = np.flatnonzero(np.abs(grip[begin:] - grip[begin]) > STILL * abs(grip[begin]))
+    end = resting(recording, begin, begin + int(gone[0])) + 1 if len(gone) else len(grip)
+    return list(range(begin, end))
 
 
 def gripping(recording: Recording) -> int:
-    """Return the last scene before the fingers first swing together; BadRequest when they never do."""
+    """Return the last scene before the fingers first swing together, at rest if they were; BadRequest without swing."""
     swing = swing_deg(recording)
-    moved = np.flatnonzero(np.abs(swing) > STILL * _greatest(swing))
-    return max(0, int(moved[0]) - 1)
+    moved = int(np.flatnonzero(np.abs(swing) > STILL * _greatest(swing))[0])
+    grip = grip_deg(recording)[:moved]
+    closed = np.flatnonzero(grip > (1 - STILL) * float(grip.max(initial=0.0)))
+    return resting(recording, int(closed[0]), moved) if len(closed) else 0
 
 
 def phases(recording: Recording) -> list[int]:
@@ -128,10 +132,18 @@ def _greatest(swing: Numbers) -> float:
     return greatest
 
 
-def _rest(values: Numbers, index: int, until: int, tolerance: float) -> int:
-    """Return the last scene before `until` whose value is that of the one at `index`."""
-    near = np.flatnonzero(np.abs(values[index:until] - values[index]) < tolerance)
-    return index + int(near[-1])
+def resting(recording: Recording, begin: int, end: int) -> int:
+    """Return the last scene from `begin` to before `end` that finds the joints as the one before, or just the last."""
+    joints = joints_deg(recording)[max(0, begin - 1) : end]
+    moved = np.abs(np.diff(joints, axis=0)).max(axis=1)
+    still = np.flatnonzero(moved < LEAST_STEP_DEG)
+    return max(0, begin - 1) + 1 + int(still[-1]) if len(still) else max(0, end - 1)
+
+
+def _last(recording: Recording, swing: Numbers, index: int, until: int) -> int:
+    """Return the last scene before `until` whose swing is that of the one at `index`."""
+    near = np.flatnonzero(np.abs(swing[index:until] - swing[index]) < STILL * _greatest(swing))
+    return resting(recording, index, index + int(near[-1]) + 1)
 
 
 def _finger(scene: Scene, side: float) -> Scene:

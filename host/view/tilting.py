@@ -23,7 +23,7 @@ from host.view.style import FAINT, INK, PAGE_MM, Style
 from host.view.swings import filled, object_deg, phases, swing_deg
 
 FRAMES, ROW = 8, 4
-EDGE_MM, HEAD_MM, WORDS_MM, LINE_MM = 8.0, 18.0, 9.0, 3.4
+EDGE_MM, HEAD_MM, WORDS_MM, LINE_MM = 8.0, 14.0, 10.0, 3.4
 SWING_MM, OBJECT_MM = 28.0, 28.0
 
 
@@ -32,7 +32,7 @@ def tilting_figure(recording: Recording) -> Figure:
     shown = sequence(recording)
     row_mm = frame_height(recording, shown) + WORDS_MM
     rows = (len(shown) + ROW - 1) // ROW
-    curves_mm = SWING_MM + OBJECT_MM + 2 * GAP_MM + NAME_MM
+    curves_mm = SWING_MM + OBJECT_MM + GAP_MM + NAME_MM
     sheet = Sheet(TOP_MM + NAME_MM + rows * row_mm + curves_mm + BOTTOM_MM, recording.title)
     sheet.name("", "to scale; green: the object's turn from the upright, as large as it is")
     for start in range(0, len(shown), ROW):
