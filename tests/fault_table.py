@@ -1,4 +1,4 @@
-"""What is promised for each fault: the code, the longest time until all coils are off, the host's news, the way back.
+"""What is promised for each fault: code, longest time until all coils are off and joints limp, news, way back.
 
 One row per fault and situation. tests/test_hil_fault_table.py runs each through the whole stack, docs/faults.md is
 made from it. Times count from the instant of the fault; `why` says what they are made of.
@@ -13,6 +13,8 @@ CHECK_MS = 325  # between two looks at the chips' settings, and the step of the 
 LEASE_MS = 505  # and one step
 MONOSTABLE_MS = 50
 
+GRIP = "together:\n    move R to 8 deg over 500 ms\n    move L to -8 deg over 500 ms\n"
+
 ORDERS = {  # what is going on: the script, and the time after connecting within which the fault happens [ms]
     "before arming": ("fire {two} at 30 % for 4 s", (0, 0)),
     "two coils at 30 %": ("fire {two} at 30 % for 4 s", (600, 2400)),
@@ -20,6 +22,9 @@ ORDERS = {  # what is going on: the script, and the time after connecting within
     "all coils off": ("wait 3 s", (300, 1500)),
     "a guard trips": ("guard any.temperature > 40 C\nfire {one} at 100 % for 900 ms", (0, 50)),
     "attitude is asked for": ("guard roll > 80 deg\nfire {one} at 5 % for 3 s", (300, 1500)),
+    "a joint moves": ("move R to -20 deg over 3 s", (700, 2000)),
+    "joints hold": (GRIP + "wait 3 s", (1200, 2500)),
+    "an object is turned": (GRIP + "orient 1 deg for 3 s", (1200, 2500)),
 }
 RECOVERIES = {
     "none": "Nothing to do.",
@@ -28,6 +33,7 @@ RECOVERIES = {
     "clear, mend": "`clear` works; the next arming or run ends with {again} until it is mended.",
     "mend": "Mend it and connect again.",
     "replace": "Until it is mended, each arming is refused with {again}.",
+    "orient": "Until it is mended, each `orient` is refused with {again}.",
 }
 EXAMPLE = """seed = 1
 
@@ -40,13 +46,13 @@ name = "line-lose:20"   # of 1000 bytes
 at_ms = 0
 for_ms = 3000
 """
-EXIT_CODES = {"done": 0, "guard": 1, "refused": 4, "fault": 6, "lease": 7, "link lost": 7}
+EXIT_CODES = {"done": 0, "guard": 1, "camera lost": 1, "refused": 4, "fault": 6, "lease": 7, "link lost": 7}
 ANY = "any"  # code: none, or that of whatever a wrong bit looks like
 
 
 @dataclass(frozen=True)
 class Row:
-    """One promise. `off_ms` None: the coils go on as ordered. `ending` is the word of the run's report, or two of them.
+    """One promise. `off_ms` None: all go on as ordered. `ending` is the word of the run's report, or two of them.
 
     Where arming is refused, no coil is on for longer than the pulses of the self-test.
     """
@@ -78,15 +84,20 @@ class Row:
         return RECOVERIES[self.recovery].format(again=self.again)
 
 
-TWO, FULL, IDLE, BEFORE, GUARDED, ATTITUDE = (
+TWO, FULL, IDLE, BEFORE, GUARDED, ATTITUDE, MOVING, HOLDING, TURNING = (
     "two coils at 30 %",
     "a coil at 100 %",
     "all coils off",
     "before arming",
     "a guard trips",
     "attitude is asked for",
+    "a joint moves",
+    "joints hold",
+    "an object is turned",
 )
 GOES_ON = (None, "done", "none")
+FINGERS = "fingers"
+POT_MS = 115  # one joint is read in a step: ten readings, one more, and the supply
 PULSES_MS = 16  # a stuck MOSFET: from the supply's switch to the look
 
 ROWS = (
@@ -221,4 +232,23 @@ ROWS = (
     Row("cable-cut", TWO, "", LEASE_MS, "link lost", "mend", "The lease runs out (F03)."),
     Row("host-killed", TWO, "", LEASE_MS, "link lost", "mend", "The lease runs out (F03)."),
     Row("estop-open", TWO, "F02", 0, "fault", "mend, clear", "The loop opens the outputs itself."),
+    Row("estop-open", HOLDING, "F02", 10, "fault", "mend, clear", "The firmware opens the supply.", robot=FINGERS),
+    Row(
+        "joint-jam:R", MOVING, "F25", 1000, "fault", "clear, mend",
+        "At 6.7 deg/s a servo strains for 650 ms before it takes its stall current; that must last for 300 ms.", "F25",
+        robot=FINGERS,
+    ),
+    Row("joint-jam:R", HOLDING, "", *GOES_ON, "A joint that holds does not turn.", robot=FINGERS),
+    Row("servo-dead:R", HOLDING, "", *GOES_ON, "Nothing tells but the joint's angle.", robot=FINGERS),
+    Row(
+        "pot-open:R", HOLDING, "F26", POT_MS, "fault", "clear, mend",
+        "A reading that no position gives, ten times.", "F26", robot=FINGERS,
+    ),
+    Row("camera-lost", HOLDING, "", *GOES_ON, "Nobody asks for it.", robot=FINGERS),
+    Row(
+        "camera-lost", TURNING, "F27", None, "camera lost", "orient",
+        "No new frame for 100 ms ends the loop; the joints hold.", "R33", robot=FINGERS,
+    ),
+    Row("camera-frozen", TURNING, "F27", None, "camera lost", "orient", "As above.", "R33", robot=FINGERS),
+    Row("object-hidden", TURNING, "F27", None, "camera lost", "orient", "As above.", "R33", robot=FINGERS),
 )  # fmt: skip

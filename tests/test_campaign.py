@@ -6,7 +6,6 @@ import json
 import pytest
 from rich.console import Console
 
-from hil_sim.faults.table import NAMES
 from tests import campaign, deaths, trials
 from tests.sabotage import sabotage
 
@@ -32,10 +31,10 @@ def test_a_trial_is_the_same_whenever_it_is_run():
     assert trials.row_of(2) == trials.row_of(2)
 
 
-def test_every_fault_of_the_table_comes_up_in_the_campaign():
+def test_every_fault_of_robots_with_coils_comes_up_in_the_campaign():
     drawn = {trials.trial_of(number).fault.partition(":")[0] for number in range(1000)}
 
-    assert drawn == set(NAMES)
+    assert drawn == {fault.name for fault in trials.FAULTS}
 
 
 def test_firmware_without_a_lease_is_found_by_killing_its_host(monkeypatch):

@@ -1,6 +1,6 @@
-"""Every row of tests/fault_table.py through the whole stack: script, host, line, firmware, chips, coils.
+"""Every row of tests/fault_table.py through the whole stack: script, host, line, firmware, chips, coils and joints.
 
-The body keeps still: what the coils do to it decides nothing here.
+A body of coils keeps still: what they do to it decides nothing here.
 """
 
 from itertools import pairwise
@@ -16,12 +16,13 @@ from host.gait.script import loads
 from host.robot import Robot
 from host.run import run
 from protocol import causes
-from tests.fault_table import ANY, BEFORE, GUARDED, IDLE, ORDERS, RECOVERIES, ROWS
+from tests.fault_table import ANY, BEFORE, FINGERS, GUARDED, IDLE, ORDERS, RECOVERIES, ROWS
 from tests.hil_rig import HilRig
 
-COILS = {"circular": {"one": "A", "two": "A B"}, "sphere-a": {"one": "A100", "two": "A100 Am100"}}
+COILS = {"circular": {"one": "A", "two": "A B"}, "sphere-a": {"one": "A100", "two": "A100 Am100"}, FINGERS: {}}
 SEEDS = ("1", "2")  # each draws another instant
-AGAIN = "fire {one} at 30 % for 400 ms"
+AGAIN = {FINGERS: "move R to -28 deg over 2 s"}
+AGAIN_COILS = "fire {one} at 30 % for 400 ms"
 INSTEAD = {"battery-empty": "battery-full"}  # what mends a fault that does not end
 ELSEWHERE = {"imu-forgets"}  # tests/test_hil_attitude.py
 AFTERWARDS_S = 0.6  # in which a robot without its host is done
@@ -33,7 +34,7 @@ class Trial:
     def __init__(self, row, seed="1"):
         script, (earliest_ms, latest_ms) = ORDERS[row.during]
         self.row = row
-        self.rig = HilRig(f"sim:{row.robot}?body=still")
+        self.rig = HilRig(f"sim:{row.robot}" if row.robot == FINGERS else f"sim:{row.robot}?body=still")
         self.bench = self.rig.bench
         draw = Random(f"{seed}/{row.fault}")
         self.at_us = self.bench.clock.now_us + draw.randint(earliest_ms * 1000, latest_ms * 1000)
@@ -43,7 +44,8 @@ class Trial:
 
     def again(self):
         """Return the code with which another run ends, of a host that has just come."""
-        script = ORDERS[self.row.during][0] if self.row.again == "R20" else AGAIN
+        again = AGAIN.get(self.row.robot, AGAIN_COILS)
+        script = ORDERS[self.row.during][0] if self.row.again in ("R20", "R33") else again
         return self._run(self.host(), script)[1]
 
     def host(self):
@@ -61,10 +63,10 @@ class Trial:
 
     @property
     def off_ms(self):
-        """Return the time from the fault until the last coil was switched off."""
+        """Return the time from the fault until the last coil was switched off and the last joint let go."""
         last_us = self.at_us
-        for coil in self.bench.coils:
-            for (_, before), (time_us, _) in pairwise(coil.history):
+        for history in self._histories():
+            for (_, before), (time_us, _) in pairwise(history):
                 last_us = max(last_us, time_us) if before else last_us
         return (last_us - self.at_us) / 1000
 
@@ -74,16 +76,24 @@ class Trial:
         return max(coil.on_us(self.bench.clock.now_us) for coil in self.bench.coils) / 1000
 
     @property
+    def is_on(self):
+        """Return whether a coil is on or a joint driven."""
+        return any(on for history in self._histories() for _, on in history[-1:])
+
+    @property
     def was_on(self):
-        """Return whether a coil was on just before the fault."""
-        return any(
-            duty for coil in self.bench.coils for time_us, duty in coil.history[-1:] if time_us < self.at_us
-        ) or any(
+        """Return whether a coil was on, or a joint driven, just before the fault."""
+        return any(on for history in self._histories() for time_us, on in history[-1:] if time_us < self.at_us) or any(
             before
-            for coil in self.bench.coils
-            for (_, before), (time_us, _) in pairwise(coil.history)
+            for history in self._histories()
+            for (_, before), (time_us, _) in pairwise(history)
             if time_us >= self.at_us
         )
+
+    def _histories(self):
+        """Return of each coil and joint since when it was on, or driven, and since when not."""
+        coils = [[(time_us, duty > 0) for time_us, duty in coil.history] for coil in self.bench.coils]
+        return coils + [[(time_us, deg is not None) for time_us, deg in joint.history] for joint in self.bench.joints]
 
     def _run(self, host, script):
         text = f"gait 1\nrobot {self.row.robot}\n{script.format(**COILS[self.row.robot])}\n"
@@ -125,21 +135,21 @@ CASES = [(row, seed) for row in ROWS for seed in SEEDS[: 1 if row.during == BEFO
 
 
 @pytest.mark.parametrize(("row", "seed"), CASES, ids=named)
-def test_every_coil_is_off_in_time_and_the_host_is_told(tried, row, seed):
+def test_every_coil_is_off_and_every_joint_limp_in_time_and_the_host_is_told(tried, row, seed):
     trial = tried(row, seed)
 
     assert (trial.ending, trial.exit_code) in zip(row.endings, row.exit_codes, strict=True)
     assert row.code in (trial.code, ANY)
-    assert not trial.bench.any_coil_on
+    assert not trial.is_on
     assert trial.bench.crashes == []
     if row.during == BEFORE:
         assert trial.longest_on_ms <= row.off_ms
     elif row.off_ms is not None:
-        assert trial.off_ms <= row.off_ms
+        assert trial.off_ms <= row.off_ms, trial.off_ms
 
 
 @pytest.mark.parametrize("row", [row for row in ROWS if row.during not in (BEFORE, IDLE, GUARDED)], ids=named)
-def test_the_fault_meets_a_coil_that_is_on(tried, row):
+def test_the_fault_meets_a_coil_that_is_on_or_a_joint_that_is_driven(tried, row):
     assert tried(row).was_on
 
 

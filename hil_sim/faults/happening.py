@@ -13,7 +13,7 @@ from random import Random
 
 from hil_sim.bench import Bench
 from hil_sim.faults.parts import Mend, Value
-from hil_sim.faults.table import BATTERY, IMU, LABEL, Fault, read
+from hil_sim.faults.table import BATTERY, CAMERA, IMU, JOINT, LABEL, Fault, read
 from hil_sim.journal import FAULT
 
 BEGUN, MENDED = 1, 0  # in the journal
@@ -65,11 +65,13 @@ def schedule(bench: Bench, at_us: int, text: str, for_us: int | None = None, see
 
 def _fits(bench: Bench, fault: Fault, text: str, value: Value) -> None:
     """Raise ValueError when a fault is of something that this bench has not."""
-    has = {BATTERY: bench.supply.battery is not None, IMU: bench.board.imu is not None}
-    if fault.of and not has[fault.of]:
+    parts = {BATTERY: bench.supply.battery, IMU: bench.board.imu, CAMERA: bench.board.camera}
+    if fault.of and parts[fault.of] is None:
         raise ValueError(f"fault {text}: this robot has no {fault.of}")
     if fault.argument == LABEL:
         _names_one(fault, text, value, "coil", bench.plant.labels)
+    if fault.argument == JOINT:
+        _names_one(fault, text, value, "joint", [joint.label for joint in bench.joints])
 
 
 def _names_one(fault: Fault, text: str, value: Value, what: str, labels: Sequence[str]) -> None:

@@ -8,14 +8,15 @@ What stands after the colon is said in the table.
 from dataclasses import dataclass
 
 from hil_sim.devices.lsm6ds3tr import Lsm6ds3tr
-from hil_sim.faults import lines, parts
+from hil_sim.faults import limbs, lines, parts
+from hil_sim.faults.limbs import camera, of_a_joint
 from hil_sim.faults.parts import Mishap, Value, imu, of_a_coil, on_off, once
 from hil_sim.robotcheck import near
 
 
 @dataclass(frozen=True)
 class Argument:
-    """What stands after the colon of a name: a coil, a number in a range, or one of some words."""
+    """What stands after the colon of a name: a coil or joint, a number in a range, or one of some words."""
 
     form: str = ""
     least: float = 0
@@ -29,7 +30,7 @@ class Argument:
             if text not in allowed:
                 raise ValueError(f"after the colon stands {' or '.join(self.words)}" if self.words else "takes nothing")
             return text
-        if self.form == LABEL.form:
+        if self.form in (LABEL.form, JOINT.form):
             return text
         try:
             number = float(text) if self.form == DRIFT.form else int(text)
@@ -59,8 +60,9 @@ class Fault:
         return f"{self.name}:{self.argument.form}" if self.argument.form else self.name
 
 
-BATTERY, IMU = "battery", "attitude sensor"
+BATTERY, IMU, CAMERA = "battery", "attitude sensor", "camera"
 LABEL = Argument("LABEL")
+JOINT = Argument("JOINT")
 COUNT = Argument("COUNT", 1, 1_000_000)
 PERMILLE = Argument("PERMILLE", 1, 1000)
 PERCENT = Argument("PERCENT", 1, 100)
@@ -125,6 +127,12 @@ TABLE = (
     Fault("estop-open", "The emergency-stop loop is open.", on_off(lambda bench, on: bench.board.set_estop(not on))),
     Fault("estop-close", "The emergency-stop loop is closed.", once(lambda bench: bench.board.set_estop(True)), False),
     Fault("host-killed", "The host's process has died: nothing is sent or read.", on_off(lines.host_killed)),
+    Fault("joint-jam", "A joint is stuck, whatever its servo does.", of_a_joint(limbs.joint_jam), argument=JOINT),
+    Fault("servo-dead", "A servo has no torque.", of_a_joint(limbs.servo_dead), argument=JOINT),
+    Fault("pot-open", "The wire of a joint's potentiometer is broken.", of_a_joint(limbs.pot_open), argument=JOINT),
+    Fault("camera-lost", "The camera does not answer.", on_off(camera(limbs.camera_lost)), of=CAMERA),
+    Fault("camera-frozen", "The camera gives its last frame for ever.", on_off(camera(limbs.camera_frozen)), of=CAMERA),
+    Fault("object-hidden", "The camera does not see the object.", on_off(camera(limbs.object_hidden)), of=CAMERA),
 )
 NAMES = tuple(fault.name for fault in TABLE)
 
