@@ -168,11 +168,11 @@ class Check:
             if choice not in words or any(number is None or number.value > 0 for number in numbers):
                 continue
             key = name.partition(".")[2]
-            what = f"{key} {choice} needs {' or '.join(keys)} above 0: {why}"
+            what = f"needs {' or '.join(keys)} above 0: {why}"
             if name in overrides:
-                self.mistakes.append(f"{key}={choice}: {what}")
+                self.mistakes.append(f"{key}={choice} {what}")
             else:
-                self._say(name, what)
+                self._say(name, f"{key} {choice} {what}")
 
     def _wrong(self, entry: Entry, allowed: str) -> None:
         """Note that a number is none that a robot may have, in the file or from the address."""

@@ -1,11 +1,13 @@
 """The files of the two robots with fingers, and what the user is told of one that is wrong."""
 
+import re
 import tomllib
 from math import cos, pi, radians, sin
 
 import pytest
 
 from hil_sim.address import AddressError, parse
+from hil_sim.assembly import assemble
 from hil_sim.physics.hand.numbers import CONTACTS, MOTIONS, TIPS
 from hil_sim.robotfile import FOLDER, RobotFileError, load
 from hil_sim.robottexts import CHOICES
@@ -100,8 +102,8 @@ def test_an_address_chooses_the_models_of_the_physics():
 @pytest.mark.parametrize(
     ("robot", "overrides", "told"),
     [
-        ("fingers", "contact=coulomb", "contact=coulomb: contact coulomb needs object.width_mm above 0"),
-        ("fingers", "motion=dynamic", "motion dynamic needs object.width_mm or object.height_mm above 0"),
+        ("fingers", "contact=coulomb", "contact=coulomb needs object.width_mm above 0"),
+        ("fingers", "motion=dynamic", "motion=dynamic needs object.width_mm or object.height_mm above 0"),
         ("fingers", "slope=10", "set=ground.slope_deg: no such number: it belongs to a robot with a shell"),
         ("circular", "tip=radial", "tip=radial: no such choice: it belongs to a robot with fingers"),
         ("sphere-a", "set=links.length_mm:9", "links.length_mm: no such number: it belongs to a robot with fingers"),
@@ -111,6 +113,26 @@ def test_an_address_chooses_the_models_of_the_physics():
 )
 def test_an_address_cannot_choose_what_the_robot_has_not(robot, overrides, told):
     assert told in refusal(robot, parse(f"sim:{robot}?{overrides}").overrides)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ("open=R", "open=R: fingers has no coils"),
+        ("body=still", "body=still: fingers has no coils to heat while it does not move"),
+        ("set=links.gap_mm:-20.5&set=object.width_mm:5", "built from these numbers: finger R: d = 20.5000 mm"),
+    ],
+)
+def test_a_bench_that_cannot_be_is_refused_by_what_is_wrong(options, told):
+    with pytest.raises(RobotFileError, match=re.escape(told)):
+        assemble(parse(f"sim:fingers?{options}"))
+
+
+def test_a_servo_on_another_pin_than_the_profile_says_is_told(tmp_path):
+    (tmp_path / "mine.toml").write_text(TEXT.replace("R = 8, L = 9", "R = 8, L = 10"), encoding="utf-8")
+
+    with pytest.raises(RobotFileError, match=r"mine and its profile .*fingers.json differ in labels or outputs: L"):
+        assemble(parse(f"sim:{tmp_path / 'mine.toml'}"))
 
 
 def test_an_unknown_choice_is_told_the_known_ones():
