@@ -15,11 +15,11 @@ from firmware.sense import Sense
 from host.gait.checker import check
 from tests.firmware_bench import Table
 from tests.gait_scripts import compiled, hand, hand_robot, report
+from tests.joint_scripts import HOME, bodies
 
 STEP_MS = 5
 READY_MS = 50  # until the camera has been looked at
 LIMP = -32768
-HOME = "move all to 0 deg over 1 s"
 GAIN = -0.5  # of the object's angle over the swing
 
 
@@ -66,35 +66,6 @@ class Bare:
             self.board.watcher.centideg = round(GAIN * sum(joints.commanded_centideg) / 2)
 
 
-names = st.sampled_from(["R", "L", "R L", "both"])
-angles = st.integers(-30, 30).map("{} deg".format)
-times = st.sampled_from([100, 300, 403, 701, 1000]).map("{} ms".format)
-moves = st.builds(
-    "move {} to {} over {}{}".format,
-    names, angles, times, st.sampled_from(["", "", " overlap 50 ms", " overlap 93 ms"]),
-)  # fmt: skip
-orients = st.builds(
-    "orient {} deg for {}{}".format, st.integers(-12, 12), times, st.sampled_from(["", " overlap 80 ms"])
-)
-conditions = st.one_of(
-    st.builds("{}.angle {} {}".format, st.sampled_from(["R", "any", "all R L"]), st.sampled_from("<>"), angles),
-    st.builds("orientation {} {}".format, st.sampled_from("<>"), angles),
-    st.just("any both.current > 50 mA"),
-)
-waits = st.one_of(
-    st.integers(1, 900).map("wait {} ms".format),
-    st.builds("wait until {} timeout {} else continue".format, conditions, times),
-)
-pairs = st.builds("together:\n    move R to {} over {}\n    move L to {} over {}".format, angles, times, angles, times)
-
-
-def blocks(inner):
-    bodies = st.lists(inner, min_size=1, max_size=3).map(lambda lines: "\n".join(lines).replace("\n", "\n    "))
-    return st.builds("repeat {}:\n    {}\n    wait 1 ms".format, st.integers(1, 4), bodies)
-
-
-statements = st.recursive(moves | orients | waits | pairs, blocks, max_leaves=5)
-bodies = st.lists(statements, min_size=1, max_size=6).map(lambda lines: "\n".join([HOME, *lines]))
 rests = st.tuples(st.integers(-6000, 6000), st.integers(-6000, 6000))
 
 
@@ -141,9 +112,7 @@ def test_moves_that_follow_each_other_make_one_line():
     assert bare.told[0][-200:] == list(range(10, 2001, 10))
 
 
-@pytest.mark.parametrize(
-    ("hold_ms", "sound", "falls"), [(4995, True, False), (5005, False, True)]
-)
+@pytest.mark.parametrize(("hold_ms", "sound", "falls"), [(4995, True, False), (5005, False, True)])
 def test_the_checker_knows_how_long_a_joint_holds(hold_ms, sound, falls):
     made = compiled(f"{HOME}\nwait {hold_ms} ms\n{HOME}", profile=hand_robot())
     bare = Bare(made.code)

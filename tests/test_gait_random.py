@@ -11,7 +11,8 @@ from host.gait.script import loads
 from host.gait.syntax import KEYWORDS
 from protocol.program import HEADER_BYTES, read_header
 from protocol.verify import check_code
-from tests.gait_scripts import HEAD, round_robot
+from tests.gait_scripts import HEAD, hand_robot, round_robot
+from tests.joint_scripts import bodies as joint_bodies
 
 LIMITS = settings(max_examples=150, deadline=None)
 
@@ -51,7 +52,8 @@ statements = st.recursive(st.one_of(static, waits), blocks, max_leaves=8)
 scripts = st.lists(statements, min_size=1, max_size=8).map(lambda lines: HEAD + "\n".join(lines) + "\n")
 pieces = st.sampled_from(
     [*KEYWORDS, "\n", "\n    ", "\n  ", ":", " ", "A", "$c", "(", ")", ",", "60", "%", "ms", "C", "0.5", "[", "]", "..",
-     "=", "#", '"', "<", ">", ".", "temperature", "any", "all", "-", "*", "/", "\t", "\r\n", "é", "\x00", "\x01"]
+     "=", "#", '"', "<", ">", ".", "temperature", "any", "all", "-", "*", "/", "\t", "\r\n", "é", "\x00", "\x01",
+     "R", "deg", "angle", "orientation"]
 )  # fmt: skip
 
 
@@ -78,12 +80,34 @@ def test_the_worst_case_of_a_random_script_is_consistent(text):
 
 
 @LIMITS
+@given(joint_bodies)
+def test_a_random_script_of_moves_compiles_to_what_the_robot_accepts(body):
+    made = compile_script(loads(HEAD + body), hand_robot())
+
+    check_code(made.code, 0, 1 << 20, joints=2)
+
+
+@LIMITS
+@given(joint_bodies)
+def test_the_worst_case_of_a_random_script_of_moves_is_consistent(body):
+    made = check(compile_script(loads(HEAD + body), hand_robot()))
+
+    assert 1000 <= made.shortest_ms <= made.longest_ms
+    for joint in made.joints:
+        assert joint.least_centideg <= 0 <= joint.most_centideg
+        assert joint.held_ms <= made.longest_ms - 1000 + 5
+        assert joint.fastest_centideg_per_s >= 3000
+    assert made.coils == ()
+
+
+@LIMITS
 @given(st.text(max_size=300) | st.lists(pieces, max_size=60).map("".join))
 def test_random_text_is_read_or_refused_and_nothing_else(text):
     for source in (text, HEAD + text):
-        refusal = refused(source)
+        for profile in (round_robot(), hand_robot()):
+            refusal = refused(source, profile)
 
-        assert refusal is None or all(item.message for item in refusal.diagnostics)
+            assert refusal is None or all(item.message for item in refusal.diagnostics)
 
 
 @LIMITS
@@ -97,20 +121,20 @@ def test_a_mistake_always_lies_within_the_text(text):
 
 
 @LIMITS
-@given(scripts, st.data())
+@given(scripts | joint_bodies.map(HEAD.__add__), st.data())
 def test_a_script_with_a_hole_in_it_is_read_or_refused_and_nothing_else(text, data):
     start = data.draw(st.integers(0, len(text)))
     end = data.draw(st.integers(start, min(start + 20, len(text))))
 
-    refusal = refused(text[:start] + text[end:])
+    refusal = refused(text[:start] + text[end:], hand_robot() if "move" in text else round_robot())
 
     assert refusal is None or refusal.exit_code in (2, 4)
 
 
-def refused(text):
+def refused(text, profile):
     """Return the reasons why a script is refused, or None; anything else that it raises passes through."""
     try:
-        check(compile_script(loads(text), round_robot()))
+        check(compile_script(loads(text), profile))
     except GaitError as error:
         return error
     return None
