@@ -167,7 +167,7 @@ def pressed(d: Any, theta: Any, a: float, E: float, d_t: Any = 0.0, nail: bool =
     d, theta = np.asarray(d, float)[()], np.asarray(theta, float)[()]
     for name, value, unit in (("a", a, "m"), ("E", E, "Pa"), ("k", k, "")):
         if not 0.0 < value < np.inf:
-            raise HandError(f"{name} = {value:g} {unit}, must be positive and finite".replace("  ", " "))
+            raise HandError(f"{quantity(name, value, unit)}, must be positive and finite")
     for name, values in (("d", d), ("theta", theta), ("d_t", d_t)):
         if not np.isfinite(values).all():
             raise HandError(f"{name} = {values} is not a finite number")
@@ -184,6 +184,11 @@ def within(d: Any, theta: Any, a: float, finger: str = "tip") -> None:
         shape = np.broadcast_shapes(np.shape(d), np.shape(theta))
         values = (np.broadcast_to(each, shape).flat[wrong[0]] for each in (d, theta, limit))
         raise refusal(finger, *(float(value) for value in values))
+
+
+def quantity(name: str, value: float, unit: str) -> str:
+    """Return a number as errors name it."""
+    return f"{name} = {value:g} {unit}".rstrip()
 
 
 def refusal(finger: str, d: float, theta: float, limit: float) -> HandError:

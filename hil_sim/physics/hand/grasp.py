@@ -148,9 +148,9 @@ def rest(f: Fingers, q_r: float, q_l: float, found: Array) -> int:
         found[3 + i], found[5 + i], found[7 + i], found[9 + i] = d, theta, N, M
         found[11 + i] = N * s * (cos(psi) * dx + sin(psi) * dy) + M
         found[13] += U
-        if not d > 0.0:
+        if status == HELD and not d > 0.0:
             status = LOST_R + i
-        elif not d <= deepest(f.a, theta) and status == HELD:
+        elif status == HELD and not d <= deepest(f.a, theta):
             status = DEEP_R + i
     return RESTLESS if status == HELD and not (K > 0.0 and count < ITERATIONS_MAX) else status
 
@@ -161,10 +161,12 @@ def settle(f: Fingers, q_r: float, q_l: float) -> tuple[float, float, float, int
     (rx, ry), (lx, ly) = centre(f, 1.0, q_r), centre(f, -1.0, q_l)
     R, beta, u = hypot(rx - lx, ry - ly), atan2(ry - ly, rx - lx), 0.5 * (q_r + q_l)
     D = 2.0 * f.a + f.w - R
-    psi = beta if D <= 0.0 else (3.0 * R * beta + 2.0 * f.b * D * u) / (3.0 * R + 2.0 * f.b * D)
+    if abs(u - beta) >= 0.5 * pi or abs(q_r - q_l) >= pi:
+        return shift(f, q_r, q_l, u), u, 0.0, 0  # the fingers have passed each other, as the depths will say
+    if D <= 0.0:
+        return shift(f, q_r, q_l, beta), beta, 0.0, 0
+    psi = (3.0 * R * beta + 2.0 * f.b * D * u) / (3.0 * R + 2.0 * f.b * D)
     p = shift(f, q_r, q_l, psi)
-    if D <= 0.0 or abs(u - beta) >= 0.5 * pi or abs(q_r - q_l) >= pi:
-        return p, psi, 0.0, 0  # apart, or tilted beyond a right angle: the depths say which
     low, high = min(beta, u), max(beta, u)
     for count in range(1, ITERATIONS_MAX):
         if 3.0 * R * sin(psi - beta) / (D + R - R * cos(psi - beta)) + 2.0 * f.b * tan(psi - u) > 0.0:
@@ -186,7 +188,9 @@ def shift(f: Fingers, q_r: float, q_l: float, psi: float) -> float:
     """Return p at which the tips press equally hard on an object at psi, where they touch it [m]."""
     (rx, ry), (lx, ly) = centre(f, 1.0, q_r), centre(f, -1.0, q_l)
     r, left = cos(psi) * rx + sin(psi) * ry, cos(psi) * lx + sin(psi) * ly
-    share = cos(psi - q_r) / (cos(psi - q_r) + cos(psi - q_l)) if f.b > 0.0 else 0.5
+    g_r, g_l, share = cos(psi - q_r), cos(psi - q_l), 0.5
+    if f.b > 0.0 and g_r > 0.0 and g_l > 0.0:
+        share = g_r / (g_r + g_l)
     return share * (2.0 * f.a + f.w - r + left) - (f.a + 0.5 * f.w - r)
 
 

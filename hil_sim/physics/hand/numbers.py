@@ -8,7 +8,7 @@
 from math import inf, isfinite
 from typing import NamedTuple
 
-from hil_sim.physics.hand.fingertip import HandError
+from hil_sim.physics.hand.fingertip import HandError, quantity
 
 TIPS = ("nail", "radial")
 CONTACTS = ("frictionless", "stick", "coulomb")
@@ -122,13 +122,14 @@ def _check(numbers: HandNumbers) -> None:
         if getattr(numbers, name) not in known:
             raise HandError(f"{name} {getattr(numbers, name)!r} is not known: {', '.join(known)}")
     for name, unit in (POSITIVE | NOT_NEGATIVE | FINITE).items():
-        value, space = getattr(numbers, name), " " if unit else ""
+        value = getattr(numbers, name)
+        said, zero = quantity(name, value, unit), f"0 {unit}".rstrip()
         if not isfinite(value):
-            raise HandError(f"{name} = {value:g}{space}{unit} is not a finite number")
+            raise HandError(f"{said} is not a finite number")
         if name in POSITIVE and value <= 0.0:
-            raise HandError(f"{name} = {value:g}{space}{unit}, must be above 0{space}{unit}")
+            raise HandError(f"{said}, must be above {zero}")
         if name in NOT_NEGATIVE and value < 0.0:
-            raise HandError(f"{name} = {value:g}{space}{unit}, at least 0{space}{unit}")
+            raise HandError(f"{said}, at least {zero}")
     if numbers.contact != "frictionless" and numbers.w == 0.0:
         raise HandError(
             f"contact {numbers.contact!r} with w = 0 m is over-constrained: both tips would stick to one line of no"
