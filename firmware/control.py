@@ -112,7 +112,7 @@ class Control:
 
     def _drive_limbs(self, now_ms: int, powered: bool) -> int:
         code = self.limbs.drive(now_ms, powered)
-        self.guard.joints_on = self.limbs.joints.on_mask != 0
+        self.guard.joints_draw = self.limbs.may_draw(now_ms)
         return code and self.guard.fault(code, self.limbs.sense.value, self.limbs.sense.channel)
 
     def _measure(self) -> int:

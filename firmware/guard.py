@@ -24,7 +24,7 @@ class Guard:
         self._sense = sense
         self._channels = channels
         self._board = board
-        self.joints_on = False  # whether any joint is driven
+        self.joints_draw = False  # whether servos may take current
         self._stray_since_ms = 0
         self._low_since_ms = 0
 
@@ -39,7 +39,7 @@ class Guard:
             return self.fault(codes.ALERT, sense.current_ma)
         if not BOARD_MIN_DECIDEGC <= sense.board_decidegc <= BOARD_MAX_DECIDEGC:
             return self.fault(codes.SENSOR, sense.board_decidegc)
-        if sense.current_ma <= STRAY_MA or self._channels.on_mask or self.joints_on:
+        if sense.current_ma <= STRAY_MA or self._channels.on_mask or self.joints_draw:
             self._stray_since_ms = now_ms
         elif now_ms - self._stray_since_ms > SETTLE_MS:
             return self.fault(codes.STRAY_CURRENT, sense.current_ma)

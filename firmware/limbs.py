@@ -15,6 +15,8 @@ from firmware.orient import Orient
 from firmware.selftest import NO_JOINT
 from protocol import codes
 
+SLACKEN_MS = 150  # for which a servo holds after its last pulse. ASSUMED: 100 ms, and the period that has begun
+
 
 class Limbs:
     """The joints of one robot and what moves them; `channel` and `value` are those of the last fault."""
@@ -28,6 +30,7 @@ class Limbs:
         if self.camera and profile.orient:
             self.orient = Orient(self.joints, self.camera, profile.orient, profile.servo)
         self._hold_max_ms = profile.servo.hold_max_ms
+        self._driven_ms = -SLACKEN_MS  # when a joint was driven last
 
     def look(self, now_ms: int) -> None:
         """Read what is measured."""
@@ -41,12 +44,13 @@ class Limbs:
             self.orient.update(now_ms)
         self.joints.update(now_ms)
         self.joints.write()
+        if self.joints.on_mask:
+            self._driven_ms = now_ms
         return self.sense.check(now_ms) if powered else 0
 
     def move(self, mask: int, target_centideg: int, over_ms: int, hold_ms: int, now_ms: int) -> None:
         """Move joints as ordered, or raise Refused; a loop that held them ends."""
         self.joints.update(now_ms)  # an order sets out from where the last one has come to by now
-        self.joints.update(now_ms)
         self.joints.move(mask, target_centideg, over_ms, hold_ms, now_ms)
         if self.orient:
             self.orient.cancel()
@@ -55,7 +59,6 @@ class Limbs:
         """Regulate the object's angle, or raise Refused."""
         if not self.orient:
             raise Refused(codes.NO_CAMERA)
-        self.joints.update(now_ms)
         self.joints.update(now_ms)
         self.orient.begin(target_centideg, time_ms, hold_ms, now_ms)
 
@@ -70,6 +73,10 @@ class Limbs:
     def busy(self, now_ms: int) -> bool:
         """Return whether an order is still being carried out; holding is none."""
         return self.joints.moving(now_ms) or (self.orient is not None and self.orient.busy(now_ms))
+
+    def may_draw(self, now_ms: int) -> bool:
+        """Return whether a servo may take current: a joint is driven, or was a moment ago."""
+        return now_ms - self._driven_ms < SLACKEN_MS
 
     def all_off(self) -> None:
         """Let every joint go limp."""

@@ -236,3 +236,24 @@ def test_the_pulses_are_written_only_when_they_change(armed):
     armed.run(200)
 
     assert armed.board.servos[8].writes == writes > 10
+
+
+def limp_at_last(rig, ma: int, for_ms: int) -> None:
+    """Have joints that hold go limp at the end of their order, and their servos take current for so long after."""
+    rig.move(R | L, 500, over_ms=100, hold_ms=100)
+    rig.board.supply.ma = ma
+    rig.run(200 + for_ms)
+    rig.board.supply.ma = 10
+    rig.run(500)
+
+
+def test_servos_may_hold_for_a_moment_after_their_last_pulse(armed):
+    limp_at_last(armed, ma=4000, for_ms=150)
+
+    assert not armed.events("tripped")
+
+
+def test_current_that_flows_on_while_every_joint_is_limp_trips(armed):
+    limp_at_last(armed, ma=4000, for_ms=400)
+
+    assert [trip.code for trip in armed.events("tripped")] == [codes.STRAY_CURRENT]
