@@ -35,9 +35,9 @@ def step(width_ns):
 
 
 class Rig:
-    """A bench with firmware of a test's own on the board's drivers, and a camera over an object at 4.2 degrees."""
+    """A bench with firmware of a test's own on the board's drivers, and a camera over an object."""
 
-    def __init__(self, folder, main, world="cpython"):
+    def __init__(self, folder, main, world="cpython", object_deg=4.2):
         sources = {str(path.relative_to(ROOT)): path.read_text() for path in (ROOT / "firmware").rglob("*.py")}
         sources |= {str(path.relative_to(ROOT)): path.read_text() for path in (ROOT / "protocol").rglob("*.py")}
         self.bench = bench_of(folder, BOARD + main, sources, execute=WORLDS[world], keep_journal=True)
@@ -45,10 +45,11 @@ class Rig:
         self.board.adc.inputs.update({channel: lambda channel=channel: 0.25 * channel for channel in range(6)})
         self.camera = AngleCamera(CAMERA, self.bench.clock, Optics(), seed="1")
         self.board.bus.chips.append(self.camera)
+        self._object_deg = object_deg
         self._expose()
 
     def _expose(self):
-        self.camera.expose(self.bench.clock.now_us, 4.2)
+        self.camera.expose(self.bench.clock.now_us, self._object_deg)
         self.bench.clock.at(self.bench.clock.now_us + GRID_US, self._expose)
 
     def run(self, ms=100):
@@ -106,6 +107,17 @@ def test_a_frame_of_the_camera_is_new_once(tmp_path):
     )
 
     assert Rig(tmp_path, main).run(ms=300).done() == ["True True True"]
+
+
+@pytest.mark.parametrize("object_deg", [-4.2, 59.9])
+def test_the_angle_has_its_sign_and_a_hidden_object_none(tmp_path, object_deg):
+    main = "for _ in range(9): step(0)\nprint(camera.seen, camera.centideg)"
+    said = Rig(tmp_path, main, object_deg=object_deg).run().done()[0].split()
+    hidden = Rig(tmp_path / "hidden", main, object_deg=None).run().done()
+
+    assert said[0] == "True"
+    assert int(said[1]) == pytest.approx(100 * object_deg, abs=10)
+    assert hidden == ["False 0"]
 
 
 NOBODY = "try: camera.read()\nexcept OSError as error: print(error.args[0])"

@@ -55,6 +55,25 @@ def test_on_other_pins_nothing_answers(tmp_path):
     assert run(tmp_path, SPI_ON_17 + main).said == ["b'\\x00'"]
 
 
+@pytest.mark.parametrize(("pins", "heard"), [("sck=Pin(14), mosi=Pin(15), miso=Pin(12)", 0x800), ("", 0)])
+def test_the_converter_answers_on_its_own_pins_of_the_second_bus(tmp_path, pins, heard):
+    main = f"""
+from machine import SPI
+cs = Pin(13, Pin.OUT, value=0)
+spi = SPI(1, 1_000_000, {pins})
+b = bytearray(b'\\x06\\x40\\x00')
+spi.write_readinto(b, b)
+print((b[1] & 15) << 8 | b[2])
+while True: time.sleep_ms(5)
+"""
+    bench = bench_of(tmp_path, main)
+    bench.board.adc.inputs[1] = lambda: 1.65
+    bench.clock.run_until(BOOT_US + 10_000)
+    bench.close()
+
+    assert bench.world.console == [f"{heard}\n"]
+
+
 def test_a_reset_ends_an_instruction_that_was_under_way(tmp_path):
     main = "if reset_cause() == 1:\n cs.value(0)\n spi.write(b'\\x90')\n reset()\nwhile True: time.sleep_ms(5)"
     bench = bench_of(tmp_path, SPI_ON_17 + main)
