@@ -26,7 +26,8 @@ def test_every_statement_of_the_language_is_read_into_its_own_node():
     text = (
         "gait 1\nrobot sphere-a\nparam duty = 60 % [5 % .. 90 %]\ninclude \"lib/push.gait\"\n"
         "guard any.temperature > 110 C\ndef push(c):\n    wait 1 s\nfire A B at 60 % for 1 s\nrepeat 3:\n    wait 1 s\n"
-        "move R L to -8 deg over 2 s\norient 5 deg for 3 s\ntogether:\n    wait 1 s\nwait 1 s\nwait until A.temperature < 45 C timeout 4 s else abort\npush(A)\n"
+        "move R L to -8 deg over 2 s\norient 5 deg for 3 s\n"
+        "together:\n    wait 1 s\nwait 1 s\nwait until A.temperature < 45 C timeout 4 s else abort\npush(A)\n"
     )  # fmt: skip
 
     kinds = [type(item).__name__ for item in statements(text)]
