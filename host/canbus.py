@@ -159,5 +159,5 @@ class CanBus:
 
     def _broken(self, why: str) -> LinkLost:
         return LinkLost(
-            f"{self.address.text}: the line broke ({why}); a robot that was armed switches its coils off by itself"
+            f"{self.address.text}: the line broke ({why}); a robot that was armed switches everything off by itself"
         )

@@ -277,7 +277,7 @@ def _permission_of(path: str) -> str:
 
 def _lost(address: str, error: Exception | None) -> str:
     cause = f" ({_one_line(error)})" if error else ""
-    return f"{address}: the line broke{cause}; a robot that was armed switches its coils off by itself"
+    return f"{address}: the line broke{cause}; a robot that was armed switches everything off by itself"
 
 
 def _one_line(error: Exception) -> str:

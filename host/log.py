@@ -162,7 +162,7 @@ class LogWriter:
 
     @contextmanager
     def _writing(self) -> Iterator[None]:
-        """Say that the log cannot be written, and write no more: the robot must still be left with every coil off."""
+        """Say that the log cannot be written, and write no more: the robot must still be left with everything off."""
         try:
             yield
         except OSError as error:

@@ -43,9 +43,9 @@ def observed_lines(seen: Fields) -> Iterator[str]:
         yield _line("object", _object_line(seen))
     for name, (words, form) in SEEN.items():
         if seen.get(name) is not None:
-            yield _line(words, form.format(seen[name]))
+            yield _line(words, _told(form, seen[name]))
     for name, (words, form) in OF_FINGERS.items():
-        told = [f"{label} {form.format(value)}" for label, value in seen.get(name, {}).items() if value is not None]
+        told = [f"{label} {_told(form, value)}" for label, value in seen.get(name, {}).items() if value is not None]
         if told:
             yield _line(words, ", ".join(told))
     if seen.get("model"):
@@ -61,16 +61,22 @@ def _whole_run(seen: Fields) -> Fields:
     return {name: seen[name] for name in ("trace_sha256", "torque_peak_nm") if name in seen}
 
 
+def _told(form: str, value: float) -> str:
+    """Return the value in that form, and a nothing without a sign."""
+    told = form.format(value)
+    return told.removeprefix("-") if float(told.split()[0]) == 0 else told
+
+
 def _line(name: str, told: str) -> str:
     return f"  {name:<17}{told}"
 
 
 def _object_line(seen: Fields) -> str:
     """Return the line about the object that fingers hold."""
-    across, along = seen["object_mm"]
-    place = f"at x {across:.2f} mm, y {along:.2f} mm"
+    across, along = (_told("{:.2f} mm", value) for value in seen["object_mm"])
+    place = f"at x {across}, y {along}"
     free = ", along its faces undetermined" if seen.get("along") == "undetermined" else ""
-    return f"{seen['object_deg']:.3f} deg {place}{free}{'' if seen.get('gripped') else ', not gripped'}"
+    return f"{_told('{:.3f} deg', seen['object_deg'])} {place}{free}{'' if seen.get('gripped') else ', not gripped'}"
 
 
 def _jump_line(jump: Fields) -> str:

@@ -182,7 +182,7 @@ class Robot(Orders):
         talk.wait(lambda: talk.stopped is not None, talk.now_ms() + wait_ms)
         if talk.stopped is None:
             talk.session.end_stop()
-            raise Silent("stop was sent and nobody answered it: switch the coil supply off by hand")
+            raise Silent("stop was sent and nobody answered it: switch its supply off by hand")
         return talk.stopped
 
     def statistics(self) -> dict[str, Any]:

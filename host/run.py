@@ -158,7 +158,7 @@ def upload(robot: Robot, code: bytes, progress: Progress) -> None:
 
 
 def _watched(robot: Robot, progress: Progress) -> Event:
-    """Watch the running program and return the event that ended it; a moment more is recorded, with all coils off."""
+    """Watch the running program and return the event that ended it; a moment more is recorded."""
     start_ms = robot.now_ms()
     last = None
     for record in robot.watch():

@@ -233,7 +233,7 @@ class Session:
         how = silence.given_up(oldest)
         if how:
             figures = ", ".join(f"{name} {value}" for name, value in self.statistics(1000 * now_ms).items())
-            raise LinkLost(f"the robot {how} ({figures}); it switches its coils off by itself")
+            raise LinkLost(f"the robot {how} ({figures}); it switches everything off by itself")
         if silence.probes(now_ms, oldest, hearing.keeper.doubts):
             hearing.greets(now_ms)
             self._link.post(messages.HELLO.number, self._opening.payload())

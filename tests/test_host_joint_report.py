@@ -101,3 +101,9 @@ def test_the_lines_about_fingers_say_how_the_object_lies_and_what_is_not_known()
         "  model            nail, frictionless, quasi-static",
     ]
     assert next(observed_lines({**SEEN, "gripped": False})).endswith(", not gripped")
+
+
+def test_a_nothing_has_no_sign():
+    shown = next(observed_lines({**SEEN, "object_deg": -1e-9, "object_mm": [-1e-4, 51.0]}))
+
+    assert shown == "  object           0.000 deg at x 0.00 mm, y 51.00 mm, along its faces undetermined"

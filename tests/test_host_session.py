@@ -479,7 +479,7 @@ def test_stop_is_repeated_until_it_is_answered(peer):
 def test_a_stop_that_nobody_answers_says_so(peer, line):
     peer.deaf = True
 
-    with pytest.raises(Silent, match="switch the coil supply off by hand"):
+    with pytest.raises(Silent, match="switch its supply off by hand"):
         Robot(line).stop()
 
 

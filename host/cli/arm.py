@@ -18,9 +18,9 @@ from host.cli.output import emit
 @without_option
 @json_option
 def command(robot: str, lease: int, hold_ms: int, without: tuple[str, ...], as_json: bool) -> None:
-    """Take a robot's lease, once it has tested every coil, so that it takes orders.
+    """Take a robot's lease, once it has tested every coil and joint, so that it takes orders.
 
-    The robot disarms by itself when the lease runs out; `run` and `fire` arm it themselves.
+    The robot disarms by itself when the lease runs out; `run`, `fire` and `move` arm it themselves.
     """
     with connected(robot) as face:
         face.arm(lease, without)

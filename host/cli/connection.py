@@ -12,7 +12,7 @@ from host.robot import Robot
 
 @contextmanager
 def connected(address: str, watch_only: bool = False, key: bytes | None = None) -> Iterator[Robot]:
-    """Open the line, say hello, and leave with every coil off; Ctrl-C sends stop and waits for the answer.
+    """Open the line, say hello, and leave with everything off; Ctrl-C sends stop and waits for the answer.
 
     Without a `key` it is that which the command was given, if any.
     """

@@ -1,4 +1,4 @@
-"""`softrig disarm`: all coils off, lease returned."""
+"""`softrig disarm`: everything off, lease returned."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from host.cli.output import emit
 @robot_option()
 @json_option
 def command(robot: str, as_json: bool) -> None:
-    """Switch all coils off and return the lease."""
+    """Switch all coils off, let all joints go limp, and return the lease."""
     with connected(robot) as face:
         face.disarm()
         status = face.status()

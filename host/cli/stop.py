@@ -30,4 +30,4 @@ def command(robot: str, as_json: bool) -> None:
 
 def _said(stopped: Stopped) -> str:
     coils = [f"coil {coil}" if coil.isalpha() else f"channel {coil}" for coil in stopped.coils]
-    return f"stopped; {', '.join(coils) or 'no coil'} on before, none now"
+    return f"stopped; {', '.join(coils) or 'no channel'} on before, none now"
