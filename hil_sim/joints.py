@@ -70,7 +70,7 @@ class Joints:
 
     def drive(self, now_us: int) -> None:
         """Pass on where the pulses tell the servos to go; without power they are limp."""
-        degrees = [servo.commanded_deg(now_us) if self._board.powered else None for servo in self._servos]
+        degrees = [servo.commanded_deg(now_us) if self._fed else None for servo in self._servos]
         self._plant.command(degrees)
         for index, (record, degree) in enumerate(zip(self.records, degrees, strict=True)):
             record.command(degree, now_us)
@@ -81,8 +81,13 @@ class Joints:
         if self._board.camera is not None:
             self._board.camera.expose(now_us, self._plant.object_deg)
 
+    @property
+    def _fed(self) -> bool:
+        """Whether the servos have power: PWR_EN is closed, and the second contact of the emergency stop."""
+        return self._board.powered and self._board.estop_closed
+
     def _current_a(self, index: int) -> float:
-        return float(self._plant.joint_current_a[index]) if self._board.powered else 0.0
+        return float(self._plant.joint_current_a[index]) if self._fed else 0.0
 
     def _current_v(self, index: int) -> Callable[[], float]:
         return lambda: CURRENT_V_PER_A * self._current_a(index)

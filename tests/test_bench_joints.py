@@ -76,6 +76,17 @@ def test_a_servo_goes_where_its_pulses_say_until_they_end_or_the_power_does(benc
     assert bench.observe()["joint_driven_s"]["R"] == pytest.approx(0.2, abs=0.01)
 
 
+def test_the_emergency_stop_lets_servos_go_whatever_the_firmware_does(bench):
+    bench.run(0.15)
+    assert bench.any_joint_driven
+
+    bench.board.set_estop(False)
+    bench.run(0.01)
+
+    assert bench.plant.told[-1] == [None, None]
+    assert bench.supply.current_a == 0.0
+
+
 def test_servos_load_the_rail_and_the_monitor_sees_it(bench):
     bench.run(0.19)
 
