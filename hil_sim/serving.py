@@ -58,7 +58,8 @@ class Serving:
         for number, bench in sorted(self._desk.benches.items()):
             which = {"node": number} if len(self._desk.benches) > 1 else {}
             seen = {**which, **bench.observe(), "slipped_s": round(pace.slipped_s, 3)}
-            say({"event": "observed", **seen}, "\n".join(f"{key}: {_short(value)}" for key, value in seen.items()))
+            told = [f"{key}: {_short(value)}" for key, value in seen.items() if value != {}]
+            say({"event": "observed", **seen}, "\n".join(told))
 
     def _lay_lines(self, link: Path | None, tcp: tuple[str, int] | None) -> None:
         for number, bench in sorted(self._desk.benches.items()):
@@ -103,4 +104,6 @@ def _short(value: Any) -> str:
         return f"{value:.4g}"
     if isinstance(value, dict):
         return " ".join(f"{key}={_short(item)}" for key, item in value.items())
+    if isinstance(value, list) and value:
+        return ", ".join(map(_short, value))
     return str(value)
