@@ -10,8 +10,9 @@ so the bounds r_s of |T| = mu N in the directions s = +1 and -1 are the near roo
 
 A displacement beyond is brought back to its bound (return mapping). Where the roots are not real, from mu = 1 on for a
 level face, the normal force grows with the shear so fast that the tip never slips. With both tips slipping the forces
-do not depend on where the object is along its faces: a thousandth of what a displacement is beyond its bound is kept,
-which makes both slip alike and errs in T by 1e-3 of what one step slips, however many there are (ASSUMED: numerical).
+do not depend on where the object is along its faces: of what a displacement is beyond its bound 1e-3 is kept,
+which makes both slip alike and errs in T by as little of what one step slips, however many there are (ASSUMED:
+numerical).
 
 Source: Coulomb's law and return mapping, standard; (C1) and (C2) are derived here.
 """

@@ -113,14 +113,16 @@ def settle(f: Fingers, work: Array) -> int:
 @lean
 def judged(f: Fingers, work: Array) -> int:
     """Return HELD if what is in the workspace is a rest within the model, else what is wrong."""
+    if work[SLIP] > FAR:
+        return SLIDES
     for i in range(2):
         d, theta, sigma = meet(f, 1.0 - 2.0 * i, work[NEW + Q_R + i], work[NEW + X], work[NEW + Y], work[NEW + PSI])
         if not d > 0.0 or (f.h > 0.0 and abs(sigma) > 0.5 * f.h):
             return LOST_R + i
+        if abs(work[NEW + SLIDE_R + i]) > SHEARED * d:
+            return SLIDES
         if not d <= deepest(f.a, theta):
             return DEEP_R + i
-        if work[SLIP] > FAR or abs(work[NEW + SLIDE_R + i]) > SHEARED * d:
-            return SLIDES
     return HELD if stiffness(work) > 0.0 else RESTLESS
 
 
