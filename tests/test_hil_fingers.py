@@ -1,8 +1,8 @@
 """Two soft fingers through script, host, wire, firmware, pulses, servos and physics: Figures 13 and 14 of the paper.
 
 Expected figures are those of an independent calculation for the angles that the script orders. A servo with a dead band
-of 1 us stands up to 0.09 degrees beside its order, which is 0.08 mm at the tip of a finger of 51 mm, 0.01 degrees of
-the object and 4 % of the energy of the grip.
+of 0.5 us stands up to 0.045 degrees beside its order, which is 0.04 mm at the tip of a finger of 51 mm, 0.006 degrees
+of the object and 4 mJ, 2 %, of the energy of the grip.
 """
 
 from functools import cache
@@ -22,8 +22,8 @@ from tests.hil_rig import HilRig
 
 FIGURE_13, SWINGS, ORIENT = (f"gaits/fingers-{name}.gait" for name in ("figure13", "experiment", "orient"))
 PHASES = ((8, -8), (28, 12), (-12, -28))  # where the joints are sent to
-DEAD_BAND_DEG = 0.09
-OBJECT_DEG, TIP_MM = 0.02, 0.1  # what that makes of the object's angle and of a displacement
+DEAD_BAND_DEG = 0.046
+OBJECT_DEG, TIP_MM, ENERGY_MJ = 0.01, 0.05, 4.0  # what that makes of the object's angle, a displacement, the energy
 
 
 class Row(NamedTuple):
@@ -84,12 +84,12 @@ def test_the_energy_only_grows_until_phase_1_and_then_alternates():
     energies = [row.seen["energy_mj"] for row in seen.rows]
     first, second, third = (seen.last(*told) for told in PHASES)
 
-    growing, falling, over = energies[:first], energies[first + 200 : second], energies[second:third]
+    growing, between = energies[:first], energies[second:third]
 
     assert growing == sorted(growing)
-    assert falling == sorted(falling, reverse=True)
-    assert max(over) == pytest.approx(229.11, rel=0.04)
-    assert (energies[second], energies[third]) == pytest.approx((213.52, 213.52), rel=0.01)
+    assert (energies[first], max(between)) == pytest.approx((229.11, 229.11), abs=ENERGY_MJ)
+    assert (energies[second], energies[third]) == pytest.approx((213.52, 213.52), abs=ENERGY_MJ)
+    assert max(energies) < 229.11 + ENERGY_MJ
 
 
 def test_the_object_turns_a_little_against_the_fingers_and_back():
