@@ -14,13 +14,14 @@ class AngleCamera:
         self._bus = bus
         self._frame = -1
         self._registers = bytearray(5)
+        self._stranger = OSError(19, "ENODEV")  # raised without allocating
 
     def read(self) -> bool:
         """Bring the last frame into `seen` and `centideg`; return whether it is a new one."""
         registers = self._registers
         self._bus.readfrom_mem_into(self.address, 0, registers)
         if registers[0] != IDENTITY:
-            raise OSError(19, "ENODEV")
+            raise self._stranger
         fresh = registers[2] != self._frame
         self._frame = registers[2]
         self.seen = bool(registers[1] & SEEN)
