@@ -56,13 +56,25 @@ wait until roll > 170 deg timeout 50 ms else abort
 """
 
 
+FINGERS = """gait 1
+robot fingers-experiment
+guard any.current > 2400 mA
+together:
+    move R to 2.5 deg over 500 ms
+    move L to -2.5 deg over 500 ms
+wait until all.angle < 30 deg timeout 1 s else continue
+orient 2 deg for 1 s
+wait until orientation > 1 deg timeout 50 ms else continue
+"""
+
+
 def locked(name="sphere-a", lock=LOCK):
     """Return a robot whose firmware locks its heap in each control step, connected."""
     robot = load(name, {})
     image = Image.installed(robot.profile.read_bytes())
     files = {path: image.read(path) for path in image.paths()}
     files["a/firmware/control.py"] += lock
-    address = parse(f"sim:{name}?body=still")
+    address = parse(f"sim:{name}" if name.startswith("fingers") else f"sim:{name}?body=still")
     bench = Bench(parts_of(robot), plant_of(robot, 1, address.body), Image(files), micropython.execute)
     bench.clock.run_until(BOOTED_US)
     link = SimLink(bench)
@@ -99,6 +111,17 @@ def test_no_control_step_allocates_when_a_chip_or_coil_fails(fault):
     list(robot.listen(2500))
 
     assert bench.crashes == []
+
+
+@pytest.mark.parametrize("fault", ["", "camera-lost", "camera-frozen", "pot-open:R", "joint-jam:R"])
+def test_no_control_step_allocates_while_joints_move_and_an_object_is_turned(fault):
+    robot, bench = locked("fingers-experiment")
+    if fault:
+        schedule(bench, bench.clock.now_us + 600_000, fault)
+    run(robot, compile_script(loads(FINGERS), robot.profile, ()).program, lambda stage, done: None)
+
+    assert bench.crashes == []
+    assert bench.world.resets == 0
 
 
 @pytest.mark.parametrize("request_of", [messages.COILS_REQUEST, messages.SETTINGS_REQUEST, messages.STATUS_REQUEST])
