@@ -155,3 +155,29 @@ def test_a_fault_leaves_the_same_trace_in_both_worlds(faults):
     here, there = (driven(world, 0.05, plan) for world in WORLDS)
 
     assert here == there != driven("cpython", 0.05)
+
+
+def turned(world, fault):
+    """Grip and turn an object, with a fault on the way, and return the trace."""
+    link = open_link(f"sim:fingers-experiment?world={world}")
+    robot = Robot(link)
+    robot.connect()
+    robot.arm()
+    robot.move(["R"], 250, 300, 3000)
+    robot.move(["L"], -250, 300, 3000)
+    schedule(link.bench, link.bench.clock.now_us + 700_000, fault, for_us=500_000)
+    list(robot.listen(500))
+    robot.orient(200, 1000, 500)
+    list(robot.listen(2000))
+    trace = link.bench.trace_sha256()
+    link.close()
+    return trace
+
+
+@pytest.mark.parametrize(
+    "fault", ["joint-jam:R", "servo-dead:L", "pot-open:R", "camera-lost", "camera-frozen", "object-hidden"]
+)
+def test_a_fault_of_joints_or_camera_leaves_the_same_trace_in_both_worlds(fault):
+    here, there = (turned(world, fault) for world in WORLDS)
+
+    assert here == there
