@@ -84,3 +84,30 @@ def test_a_log_of_fingers_is_exported_with_a_column_for_each_joint(softrig, scri
     assert {"joint_deg.R", "commanded_deg.L", "joint_ma.R", "object_deg"} <= set(rows[0])
     assert not {name for name in rows[0] if name.startswith("duty_permille")}
     assert max(float(row["joint_deg.R"]) for row in rows) == pytest.approx(4, abs=2 * SERVO_DEG)
+
+
+@pytest.mark.parametrize(
+    ("fault", "status", "told_as"),
+    [
+        ("camera-lost", 1, "gave up turning the object: F27"),
+        ("joint-jam:R", 6, ": F25 A joint's servo took its stall current"),
+        ("pot-open:L", 6, "the robot tripped (joint L): F26"),
+    ],
+)
+def test_what_goes_wrong_while_an_object_is_turned_is_told_by_name(softrig, tmp_path, fault, status, told_as):
+    path = tmp_path / "faults.toml"
+    path.write_text(f'[[fault]]\nname = "{fault}"\nat_ms = 2500\n')
+
+    told = softrig("orient", "5deg", "--grip", "2.5deg", "--hold", "2s", "--robot", f"{EXPERIMENT}&faults={path}")
+
+    assert told.status == status
+    assert told_as in told.err
+
+
+def test_a_robot_whose_camera_sees_nothing_refuses_to_turn(softrig, tmp_path):
+    path = tmp_path / "faults.toml"
+    path.write_text('[[fault]]\nname = "object-hidden"\nat_ms = 0\n')
+
+    told = softrig("orient", "5deg", "--grip", "2.5deg", "--robot", f"{EXPERIMENT}&faults={path}")
+
+    assert (told.status, "orient refused: R33" in told.err) == (4, True)

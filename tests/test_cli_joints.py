@@ -34,6 +34,10 @@ def orders(peer, *names):
     return [(name, *order) for _, name, order in peer.orders if name in names]
 
 
+def interrupt():
+    raise KeyboardInterrupt
+
+
 def test_move_arms_moves_watches_to_the_end_of_the_hold_and_disarms(softrig, peer, line):
     told = softrig("move", "R", "L", "--to", "8deg", "--over", "0.5s", "--hold", "300ms")
 
@@ -124,6 +128,16 @@ def test_orient_needs_to_know_how_far_to_close(softrig, peer, line):
     assert told.status == 2
     assert "--grip" in told.err
     assert peer.orders == []
+
+
+def test_ctrl_c_in_a_move_stops_the_robot_and_names_the_joints(softrig, peer, line):
+    line.at[2000] = interrupt
+
+    told = softrig("move", "R", "L", "--to", "8deg", "--hold", "9s")
+
+    assert told.status == 130
+    assert "stop acknowledged, joints R L were driven and are limp now; the robot is tripped (F01)" in told.err
+    assert peer.stops > 0
 
 
 @pytest.mark.parametrize(

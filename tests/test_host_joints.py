@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 import struct
 
 import pytest
@@ -13,13 +14,16 @@ from host.logbook import read_log
 from host.profile import Parts, read_profile
 from host.records import Sample, Telemetry, ended
 from host.robot import Robot
+from host.run import run
 from host.selections import Selection, Selections
-from protocol import codes, messages, variables
+from protocol import codes, messages, program, variables
 from tests.fake_robot import FakeLine, FakeRobot
 from tests.joint_samples import FINGERS, HAND
 
 FINGER, BOTH = read_profile(FINGERS), read_profile(HAND)
 LIMP = variables.UNKNOWN_ANGLE
+CODE = program.move(0b11, 800, 300) + program.delay(300) + program.halt()
+PROGRAM = program.header(CODE, 0) + CODE
 
 
 @pytest.fixture
@@ -173,6 +177,22 @@ def test_a_refusal_about_a_joint_says_joint(robot, peer):
 def test_no_joint_can_be_left_out(robot):
     with pytest.raises(BadRequest, match="R is a joint: only a coil can be left out"):
         robot.arm(without=["R"])
+
+
+@pytest.mark.parametrize(
+    ("ending", "result", "status", "told_as"),
+    [
+        ((messages.ABORTED, codes.CAMERA, 255, 105), "camera lost", 1, "the script ended early: F27"),
+        ((messages.TRIP, codes.STALL, 1, 2450), "fault", 6, r"the robot tripped \(joint L\): F25 .* 2450 mA"),
+    ],
+)
+def test_a_run_that_joints_or_camera_end_says_so(robot, peer, ending, result, status, told_as):
+    peer.ending = ending
+
+    got = run(robot, PROGRAM, lambda stage, done: None)
+
+    assert (got.result, got.error().exit_code) == (result, status)
+    assert re.search(told_as, str(got.error()))
 
 
 def test_ctrl_c_names_the_joints_that_were_driven(peer):
