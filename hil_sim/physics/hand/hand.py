@@ -16,12 +16,12 @@ from math import isinf, nan
 import numpy as np
 
 from hil_sim.physics.compiled import Array, prepare
+from hil_sim.physics.hand import motion, servo
 from hil_sim.physics.hand.fingertip import FINGERS, HandError
 from hil_sim.physics.hand.grasp import HELD, failure
-from hil_sim.physics.hand.motion import ROWS, STEP, longest_step, march
+from hil_sim.physics.hand.motion import ROWS, march
 from hil_sim.physics.hand.numbers import HandNumbers, fingers_of, servo_of
 from hil_sim.physics.hand.rolling import NEW, WORK
-from hil_sim.physics.hand.servo import current
 from hil_sim.physics.hand.state import (
     ALONG,
     ENERGY,
@@ -56,7 +56,9 @@ class Hand:
         self.state = lying(numbers.L, *q)
         self.read = np.zeros(READ)
         self.work, self.rows = np.zeros(WORK), np.zeros((ROWS, STATE))
-        self.step = longest_step(self.fingers) if numbers.motion == "dynamic" else STEP  # of the motion [s]
+        self.step = servo.longest_step(self.servo, self.fingers)  # of joints and object [s]
+        if numbers.motion == "dynamic":
+            self.step = min(self.step, motion.longest_step(self.fingers))
 
     @property
     def q(self) -> Array:
@@ -82,7 +84,7 @@ class Hand:
     def current(self) -> Array:
         """Currents of the servos, at least that without load while they have power at all [A]."""
         n = self.numbers
-        return np.array([current(motor, n.stall, n.I_idle, n.I_stall) for motor in self.motor])
+        return np.array([servo.current(motor, n.stall, n.I_idle, n.I_stall) for motor in self.motor])
 
     @property
     def pose(self) -> Array:
@@ -177,7 +179,7 @@ def hand_of(numbers: HandNumbers, q: Sequence[float] = (0.0, 0.0)) -> Hand:
     """
     prepare(creep)
     hand = Hand(numbers, q)
-    _judge(hand, creep(hand.fingers, hand.servo, nan, nan, 0.0, hand.state, hand.read, hand.work))
+    _judge(hand, creep(hand.fingers, hand.servo, nan, nan, 0.0, hand.step, hand.state, hand.read, hand.work))
     return hand
 
 
@@ -209,9 +211,9 @@ def advance(hand: Hand, commands: Sequence[float], dt: float) -> None:
     if not 0.0 <= dt < np.inf:
         raise HandError(f"dt = {dt} s, must be a finite number of at least 0 s")
     if dt > 0.0:
-        given = (hand.fingers, hand.servo, c_r, c_l, dt)
+        given = (hand.fingers, hand.servo, c_r, c_l, dt, hand.step)
         if hand.numbers.motion == "dynamic":
-            status = march(*given, hand.step, hand.state, hand.read, hand.work, hand.rows)
+            status = march(*given, hand.state, hand.read, hand.work, hand.rows)
         else:
             status = creep(*given, hand.state, hand.read, hand.work)
         _judge(hand, status)

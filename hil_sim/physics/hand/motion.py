@@ -31,7 +31,7 @@ from hil_sim.physics.hand.grasp import HELD, RESTLESS
 from hil_sim.physics.hand.numbers import FRICTIONLESS, Fingers, Servo
 from hil_sim.physics.hand.press import torque
 from hil_sim.physics.hand.rolling import NEW, SHEARED
-from hil_sim.physics.hand.servo import drive
+from hil_sim.physics.hand.servo import STEP_MIN, drive
 from hil_sim.physics.hand.state import (
     ALONG,
     ENERGY,
@@ -56,7 +56,6 @@ from hil_sim.physics.hand.state import (
 from hil_sim.physics.hand.still import hold, resistance, within
 
 STEP = 2.5e-4  # [s] errs by 1e-3 in a fast transient, 3e-2 at twice that
-STEP_MIN = 2e-6  # [s]
 TRIAL = 4  # row of the workspace `rows`, after the four of the method
 ROWS = 5
 

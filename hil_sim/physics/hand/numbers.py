@@ -36,7 +36,7 @@ class HandNumbers(NamedTuple):
     rate: float = 7.0  # its speed without load [rad/s]
     stall: float = 3.0  # its torque at rest [N m]
     J: float = 0.01  # moment of inertia of motor, gear and finger about the joint [kg m^2]
-    rub: float = 0.05  # of the gear, turned from outside while limp [N m s/rad]
+    rub: float = 0.4  # of gear and motor, turned from outside while limp [N m s/rad]
     I_idle: float = 0.0  # current of a servo without load [A]
     I_stall: float = 0.0  # at its stall torque [A]
     tip: str = "nail"

@@ -17,10 +17,14 @@ servos hold within their dead band), J, b viscous, no efficiency of the gear. Ch
 tests/test_physics_hand_servo.py.
 """
 
-from math import isnan
+from math import isnan, pi, sqrt
 
 from hil_sim.physics.compiled import lean
-from hil_sim.physics.hand.numbers import Servo
+from hil_sim.physics.hand.fingertip import HandError
+from hil_sim.physics.hand.numbers import Fingers, Servo
+
+STEP = 5e-4  # [s] a thirtieth of the time constant of a servo of 60 rad/s
+STEP_MIN = 2e-6  # [s]
 
 
 @lean
@@ -52,6 +56,36 @@ def drive(servo: Servo, c: float, q: float, v: float, load: float) -> tuple[floa
     least = min(servo.stall, max(-servo.stall, -servo.stall * (1.0 + v / servo.rate)))
     motor = max(least, min(most, asked))
     return (motor + load) / servo.J, motor
+
+
+def longest_step(servo: Servo, f: Fingers) -> float:
+    r"""Return the step that is stable for a joint, free, limp or pressing however deep.
+
+    Parameters
+    ----------
+    servo : Servo
+        Numbers of the servo [SI]
+    f : Fingers
+        Numbers of the fingers [SI]
+
+    Returns
+    -------
+    float
+        Step [s]
+
+    Raises
+    ------
+    HandError
+        The joint is so light that it takes steps below 2 us
+    """
+    pressing = sqrt(servo.J / (4.0 * pi * f.E * f.a * f.L * f.L))
+    h = min(STEP, 0.03 / servo.omega, 0.5 * servo.J / max(servo.stall / servo.rate, servo.rub), 0.5 * pressing)
+    if h < STEP_MIN:
+        raise HandError(
+            f"J = {servo.J:g} kg m^2 is too light: the joint would take steps of {1e6 * h:.2g} us,"
+            f" at least {1e6 * STEP_MIN:g} us"
+        )
+    return h
 
 
 def current(motor: float, stall: float, I_idle: float, I_stall: float) -> float:

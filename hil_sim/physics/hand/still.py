@@ -33,11 +33,10 @@ from hil_sim.physics.hand.state import (
     Y,
 )
 
-STEP = 5e-4  # [s] a thirtieth of a servo's time constant
-
 
 @lean
-def creep(f: Fingers, servo: Servo, c_r: float, c_l: float, dt: float, state: Array, read: Array, work: Array) -> int:
+def creep(f: Fingers, servo: Servo, c_r: float, c_l: float, dt: float, h: float, state: Array, read: Array,
+          work: Array) -> int:  # fmt: skip
     r"""Advance servos and object by dt with the object at rest at any moment.
 
     Parameters
@@ -52,6 +51,8 @@ def creep(f: Fingers, servo: Servo, c_r: float, c_l: float, dt: float, state: Ar
         Angle that the left servo is told to go to, NaN: limp [rad]
     dt : float
         Time [s]
+    h : float
+        Longest step [s]
     state : array (17,)
         State of the hand, changed in place [SI]
     read : array (16,)
@@ -64,7 +65,7 @@ def creep(f: Fingers, servo: Servo, c_r: float, c_l: float, dt: float, state: Ar
     int
         HELD, or what is wrong
     """
-    count = max(1, ceil(dt / STEP - 1e-9))
+    count = max(1, ceil(dt / h - 1e-9))
     for _ in range(count):
         q_r = turn(servo, 0, c_r, dt / count, state, read)
         q_l = turn(servo, 1, c_l, dt / count, state, read)
