@@ -17,7 +17,7 @@ from host.cli.output import emit
     "--to", "target", type=angle_centideg, required=True, metavar="ANGLE", help="Where to: 8deg, -8deg; left is plus."
 )
 @click.option("--over", type=time_ms, default="1s", show_default=True, metavar="TIME", help="How long to take.")
-@click.option("--hold", type=time_ms, default="1s", show_default=True, metavar="TIME", help="Limp this long after.")
+@click.option("--hold", type=time_ms, default="1s", show_default=True, metavar="TIME", help="Hold so long, then limp.")
 @json_option
 def command(joints: tuple[str, ...], robot: str, target: int, over: int, hold: int, as_json: bool) -> None:
     """Turn joints or groups to an angle and hold it: arms, moves, watches until they are limp again, disarms.

@@ -26,7 +26,7 @@ SPARE_MS = 2000  # for the order to turn to arrive
 @click.option(
     "--for", "lasting", type=time_ms, default="3s", show_default=True, metavar="TIME", help="Regulate so long."
 )
-@click.option("--hold", type=time_ms, default="1s", show_default=True, metavar="TIME", help="Limp this long after.")
+@click.option("--hold", type=time_ms, default="1s", show_default=True, metavar="TIME", help="Hold so long, then limp.")
 @json_option
 def command(angle: int, robot: str, grip: int, lasting: int, hold: int, as_json: bool) -> None:
     """Turn an object to an angle: arms, closes both joints on it, has the robot regulate it by its camera, disarms.
