@@ -82,7 +82,7 @@ def test_every_target_the_readme_names_exists():
     assert {"demo", "test"} <= named <= targets
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/design.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/design.md", "docs/fingers.md"])
 def test_every_file_a_page_links_to_exists(page):
     text = (ROOT / page).read_text(encoding="utf-8")
 
