@@ -81,6 +81,8 @@ TOPICS: dict[str, dict[str, Any]] = {
         "nodes": COORDINATES,
         "coils": {"type": "object"},
         "energy_j": {"type": "object"},
+        "fingers": {"type": "object"},
+        "object": {"type": "object"},
         "observed": {"type": "object"},
     },
 }
