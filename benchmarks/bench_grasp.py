@@ -42,6 +42,11 @@ def energy(u: np.ndarray, q_r: float, q_l: float) -> tuple[float, np.ndarray]:
     return total, slope
 
 
+def value(u: np.ndarray, q_r: float, q_l: float) -> float:
+    """Return the energy alone [J]."""
+    return energy(u, q_r, q_l)[0]
+
+
 def angles(poses: int) -> tuple[np.ndarray, np.ndarray]:
     """Return joint angles R and L: inward from 2 to 9 degrees, swung by up to 20 [rad]."""
     inward, swing = np.linspace(2, 9, poses), 20 * np.sin(np.arange(poses))
@@ -66,9 +71,8 @@ def sought(q_r: np.ndarray, q_l: np.ndarray, method: str, gradient: bool) -> np.
         beta = np.arctan2(along[1], along[0])
         middle = (-0.5 * PAPER.L * (sin(r) + sin(left)), 0.5 * PAPER.L * (cos(r) + cos(left)))
         start = (100 * (cos(beta) * middle[0] + sin(beta) * middle[1]), beta)
-        whole, value = (lambda u, r=r, l=left: energy(u, r, l)), (lambda u, r=r, l=left: energy(u, r, l)[0])
         options = {"gtol": 1e-9} if method == "BFGS" else {"xatol": 1e-9, "fatol": 1e-14}
-        best = minimize(whole if gradient else value, start, jac=gradient, method=method, options=options)
+        best = minimize(energy if gradient else value, start, (r, left), method, gradient, options=options)
         found.append(best.x[1])
     return np.array(found)
 
@@ -107,9 +111,8 @@ def followed() -> None:
         hand = CUBE._replace(contact=contact, mu=0.15)
         carry(hand, *q)
         took_s, held = timed(lambda hand=hand: carry(hand, *q))
-        print(
-            f"{f'a step with friction, {contact}':36}{1e6 * took_s / 4001:10.3f} us, {held.iterations.mean():.1f} Newton steps"
-        )
+        steps = f"{held.iterations.mean():.1f} Newton steps"
+        print(f"{f'a step with friction, {contact}':36}{1e6 * took_s / 4001:10.3f}    {steps}")
 
 
 def runs() -> None:
