@@ -232,7 +232,21 @@ ROWS = (
     Row("cable-cut", TWO, "", LEASE_MS, "link lost", "mend", "The lease runs out (F03)."),
     Row("host-killed", TWO, "", LEASE_MS, "link lost", "mend", "The lease runs out (F03)."),
     Row("estop-open", TWO, "F02", 0, "fault", "mend, clear", "The loop opens the outputs itself."),
-    Row("estop-open", HOLDING, "F02", 10, "fault", "mend, clear", "The firmware opens the supply.", robot=FINGERS),
+    Row(
+        "estop-open", HOLDING, "F02", 5, "fault", "mend, clear",
+        "The loop opens the supply of the servos itself; a joint is looked at every 5 ms.", robot=FINGERS,
+    ),
+    Row(
+        "hang", HOLDING, "F12", 205, "fault", "clear",
+        "A servo's pulses need no program: the joints hold until the watchdog resets.", robot=FINGERS,
+    ),
+    Row("reset", HOLDING, "F12", 5, "fault", "clear", "PWR_EN rests low.", robot=FINGERS),
+    Row("cable-cut", HOLDING, "", LEASE_MS + 5, "link lost", "mend", "The lease runs out (F03).", robot=FINGERS),
+    Row(
+        "contactor-welded", HOLDING, "", *GOES_ON,
+        "Nothing tells: servos at rest take too little to be seen. They go limp because their pulses end.",
+        robot=FINGERS,
+    ),
     Row(
         "joint-jam:R", MOVING, "F25", 1000, "fault", "clear, mend",
         "At 6.7 deg/s a servo strains for 650 ms before it takes its stall current; that must last for 300 ms.", "F25",
