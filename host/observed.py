@@ -30,11 +30,9 @@ OF_FINGERS = {  # by label
 
 
 def observed(observer: Any, recording: Recording) -> Fields:
-    """Return what `observer` sees; of joints, which go limp at the end, what it saw when they were driven last."""
+    """Return what `observer` sees; of joints, which go limp when all is over, what it saw when the program ended."""
     seen: Fields = observer.observe()
-    driven_ms = [row.host_ms for row in recording.telemetry if any(deg is not None for deg in row.commanded_deg)]
-    held = [scene for scene in recording.scenes if driven_ms and scene["host_ms"] <= driven_ms[-1]]
-    return {**seen, **held[-1]["observed"], **_whole_run(seen)} if held else seen
+    return {**seen, **recording.at_end, **_whole_run(seen)} if recording.at_end else seen
 
 
 def observed_lines(seen: Fields) -> Iterator[str]:

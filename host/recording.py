@@ -30,6 +30,7 @@ class Recording:
     events: list[Event] = field(default_factory=list)
     scenes: list[Scene] = field(default_factory=list)
     joints: tuple[str, ...] = ()
+    at_end: Scene | None = None  # of joints: what the observer observed when the program ended, and they still held
 
     def note(self, record: object) -> None:
         """Keep a record that pictures need; others are passed over."""

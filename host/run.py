@@ -16,7 +16,7 @@ from host.outages import LinkNews
 from host.profile import Parts
 from host.recording import Recording, Scene
 from host.records import Event, Record, Telemetry
-from host.robot import Robot
+from host.robot import ENDS, Robot
 from protocol import causes, codes, program
 
 TELEMETRY_MS = 50
@@ -32,14 +32,15 @@ class Progress(Protocol):
 
 
 class Keeper:
-    """Keeps what passes during a run: in a Recording, and in a log if there is one."""
+    """Keeps what passes during a run: in a Recording, and in a log if there is one; with `scenes` also what is seen."""
 
-    def __init__(self, log: LogWriter | None = None, observer: Any = None) -> None:
+    def __init__(self, log: LogWriter | None = None, observer: Any = None, scenes: bool = True) -> None:
         self.recording = Recording(())
         self._log = log
         self._observer = observer
+        self._scenes = scenes
         self._attention = Attention()
-        if hasattr(observer, "watch"):
+        if scenes and hasattr(observer, "watch"):
             observer.watch(self.glance)
 
     def know(self, parts: Parts) -> None:
@@ -58,8 +59,12 @@ class Keeper:
         self.recording.note(record)
         if self._log:
             self._log.record(record)
-        if isinstance(record, Telemetry) and self._observer is not None:
+        if self._observer is None:
+            return
+        if self._scenes and isinstance(record, Telemetry):
             self._keep(self._observer.snapshot(), record.host_ms)
+        if self.recording.joints and isinstance(record, Event) and record.event in ENDS and not self.recording.at_end:
+            self.recording.at_end = self._observer.observe()
 
     def link(self, news: LinkNews) -> None:
         """Keep what became of the line."""

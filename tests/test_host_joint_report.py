@@ -6,7 +6,8 @@ from host.drivenreport import driven, driven_lines
 from host.observed import observed, observed_lines
 from host.profile import read_profile
 from host.recording import Recording
-from host.records import Telemetry
+from host.records import Event, Telemetry
+from host.run import Keeper
 from tests.joint_samples import FINGERS, HAND
 
 FINGER = read_profile(FINGERS)
@@ -41,10 +42,14 @@ def recording():
 
 
 class Watcher:
-    """Saw the object in the grip at 400 ms; sees it now that nobody holds it."""
+    """Sees the object in the grip when it is asked first; then nobody holds it any more."""
+
+    def __init__(self):
+        self.views = [SEEN]
 
     def observe(self):
-        return {**SEEN, "object_deg": 0.0, "gripped": False, "torque_peak_nm": {"R": 2.5, "L": 2.5}}
+        free = {**SEEN, "object_deg": 0.0, "gripped": False, "torque_peak_nm": {"R": 2.5, "L": 2.5}}
+        return self.views.pop() if self.views else free
 
 
 def test_joints_are_told_by_time_driven_range_and_largest_current(recording):
@@ -78,17 +83,22 @@ def test_a_robot_of_both_kinds_has_both_tables():
     assert (list(fields["coils"]), list(fields["joints"])) == (["A", "B"], ["R", "L"])
 
 
-def test_what_fingers_held_is_told_of_the_last_instant_that_they_were_driven(recording):
-    recording.scenes += [{"host_ms": 400, "observed": SEEN}, {"host_ms": 500, "observed": Watcher().observe()}]
+def test_what_fingers_held_is_told_of_the_end_of_the_program(recording):
+    watcher = Watcher()
+    keeper = Keeper(observer=watcher, scenes=False)
+    keeper.know(FINGER.parts)
+    for name in ("started", "finished", "disarmed"):
+        keeper.record(Event(400, 400, name, 0, 0, None, 0))
 
-    seen = observed(Watcher(), recording)
+    seen = observed(watcher, keeper.recording)
 
     assert (seen["object_deg"], seen["gripped"]) == (-2.588097, True)
     assert seen["torque_peak_nm"] == {"R": 2.5, "L": 2.5}
+    assert keeper.recording.scenes == []
 
 
-def test_a_run_that_moved_no_joint_is_told_as_it_ended():
-    assert observed(Watcher(), Recording((), joints=("R", "L")))["object_deg"] == 0.0
+def test_a_run_that_did_not_end_is_told_as_it_is_seen(recording):
+    assert observed(Watcher(), recording)["object_deg"] == -2.588097
 
 
 def test_the_lines_about_fingers_say_how_the_object_lies_and_what_is_not_known():
