@@ -66,6 +66,16 @@ def test_a_run_reports_joints_and_what_they_held_in_numbers_and_in_words(softrig
     assert fields["observed"]["displacement_mm"]["R"] == pytest.approx(3.56, abs=0.2)  # 51 mm x sin 4 deg
 
 
+def test_a_report_is_the_same_whether_or_not_a_log_is_kept(softrig, script, tmp_path):
+    run = ("run", script, "--robot", "sim:fingers", "--json")
+
+    told = [told_as_json(softrig(*run, *log)) for log in ((), ("--log", str(tmp_path / "a.mcap")))]
+
+    assert [fields.pop("wall") for fields in told]
+    assert told[0] == told[1]
+    assert told[0]["observed"]["joint_torque_nm"]["R"] > 0.1  # they hold what they are told of
+
+
 def test_a_run_prints_a_table_of_joints_and_none_of_coils(softrig, script):
     told = softrig("run", script, "--robot", "sim:fingers")
 
