@@ -20,14 +20,14 @@ against the fingers, and the fingers' own direction, to which the nail effect (b
 it follow the line of the centres. Newton's steps are kept in that bracket, so they cannot fail. For small swings (G4)
 is the gain law, free of E, with d the depth of the grip:
 
-.. math::  \frac{d\psi}{dq} = -\frac{d + 3 e}{3 a + 1.5 w - d}                                                    (G5)
+.. math::  \frac{d\psi}{dq} = -\frac{d + 3 e}{3 a + 1.5 w - d}, \quad B = a + \tfrac12 w + e                        (G5)
 
 Source: Hirai, section 3.3. Gravity does not enter: nothing could carry the object along the faces. Checked in
 tests/test_physics_hand_grasp.py.
 """
 
 from collections.abc import Sequence
-from math import atan2, cos, degrees, hypot, pi, sin, tan
+from math import atan2, cos, degrees, hypot, isinf, pi, sin, tan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -112,6 +112,8 @@ def failure(status: int, state: Sequence[float] | Array, f: Fingers) -> HandErro
     """Return the error of a status for the pose and joints of a state: x, y, psi, two slides, q_r, q_l [SI]."""
     if status == RESTLESS:
         return NoEquilibrium(f"no equilibrium: Newton's method finds none near psi = {degrees(state[2]):.3f} deg")
+    if status == SLIDES and isinf(f.mu):
+        return ContactLost("the tips are sheared by more than they are pressed: beyond d_t = d nothing holds them")
     if status == SLIDES:
         return ContactLost(f"friction of ratio {f.mu:g} does not carry the object: it slides out of the fingers")
     i = (status - 1) % 2

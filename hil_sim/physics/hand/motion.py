@@ -236,9 +236,10 @@ def judge(f: Fingers, state: Array, read: Array, work: Array) -> int:
         read[D + i], read[THETA + i] = d, theta
         state[SLIDE_R + i] = slipped(f, d, theta, state[SLIDE_R + i])[0] if d > 0.0 else 0.0
         if f.contact != FRICTIONLESS:
-            if state[GRIPPED] == 0.0:
-                state[SLIDE_R + i] = max(-0.5 * SHEARED * d, min(0.5 * SHEARED * d, state[SLIDE_R + i]))
             lost = lost or abs(state[SLIDE_R + i]) > SHEARED * d or (f.h > 0.0 and abs(sigma) > 0.5 * f.h)
+            if lost or state[GRIPPED] == 0.0:
+                most = 0.5 * SHEARED * max(0.0, d)
+                state[SLIDE_R + i] = max(-most, min(most, state[SLIDE_R + i]))
         lost = lost or not d > 0.0
     if not abs(state[PSI]) < pi:
         for i in range(RATES):

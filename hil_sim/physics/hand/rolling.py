@@ -12,14 +12,15 @@ virtual work over (T1) gives, with N, M, T the derivatives of U by d, theta and 
 .. math::  F = -\sum (N s \, n - T s \, t) + (0, -m g), \quad
            M_\psi = -\sum (-N s \, \sigma + M - \tfrac12 w \, T)                                                   (T2)
 
-and -(N d_q - M + T (s t . C' - (a - d))) on a joint. (T1) cannot be integrated to a function of the pose, so the path
+and (L1) of `press` on a joint. (T1) cannot be integrated to a function of the pose, so the path
 matters; over a step the middle value of d is taken, which errs with the square of the step. |T| is at most mu N, by
 `friction`. Newton's method solves (T2) = 0 for (x, y, psi) with the exact derivatives, also of the slip; a step that
 does not converge is taken in halves. Friction determines the place along the faces, which `grasp` leaves open. With
 w = 0 psi drops out of (T1): both constraints could not hold at once, and such an object is refused.
 
-What the friction cannot carry slides: then there is no rest, and no step is returned. Source: derived here; Inoue and
-Hirai's later energy has the same three terms. Checked in tests/test_physics_hand_tangential.py.
+What the friction cannot carry slides: then there is no rest, and no step is returned. Nor is there one beyond d_t = d,
+where (F3) would make a tip that is pushed along its face press ever harder. Source: derived here; Inoue and Hirai's
+later energy has the same three terms (recalled, not read). Checked in tests/test_physics_hand_tangential.py.
 """
 
 from math import cos, hypot, inf, sin
