@@ -96,9 +96,10 @@ def test_a_crawl_is_drawn_from_its_scenes_and_is_the_same_file_each_time(crawl, 
     assert ElementTree.parse(tmp_path / "a.svg").getroot().tag.endswith("svg")
 
 
-def test_a_log_gives_the_picture_of_its_run(tmp_path):
+@pytest.mark.parametrize("gait", ["circular-poses.gait", "fingers-figure13.gait"])
+def test_a_log_gives_the_picture_of_its_run(gait, tmp_path):
     script, log, live, later = (
-        str(GAITS / "circular-poses.gait"),
+        str(GAITS / gait),
         *(str(tmp_path / name) for name in ("a.mcap", "a.svg", "b.svg")),
     )
     softrig(["run", script, "--log", log, "--plot", live], standalone_mode=False)

@@ -13,7 +13,10 @@ from host.view.instants import Numbers, scene_times
 from host.view.style import INK, Style
 from host.view.swings import object_deg
 
-LEGEND: Style = {"loc": "upper right", "ncols": 3, "frameon": False, "fontsize": 6.5, "borderaxespad": 0.0}
+LEGEND: Style = {
+    "loc": "upper right", "ncols": 3, "fontsize": 6.5, "borderaxespad": 0.0, "borderpad": 0.2,
+    "facecolor": "white", "edgecolor": "none", "framealpha": 1.0,
+}  # fmt: skip
 LEAST_DEG = 0.5  # of an axis of angles, to either side
 
 
