@@ -131,8 +131,10 @@ class Core:
         self.reports.event(messages.STARTED)
 
     def end_program(self, event: int, code: int = 0, value: int = 0) -> None:
-        """Leave the running program: all coils off, joints hold, still armed."""
+        """Leave the running program: all coils off, joints hold where they are, still armed."""
         self.channels.all_off(self.now_ms)
+        if self.limbs:
+            self.limbs.stand()
         self.state = messages.ARMED
         if event == messages.FINISHED:
             self.reports.step_done()

@@ -12,6 +12,7 @@ from protocol import codes
 from protocol.variables import UNKNOWN_ANGLE
 
 LIMP = UNKNOWN_ANGLE
+LONG_MS = 29_000  # a longer way is reckoned in coarser time: 36000 centidegrees times more would be beyond 2**30
 
 
 class Joints:
@@ -48,6 +49,12 @@ class Joints:
         self._over_ms[joint] = 0
         self._end_ms[joint] = end_ms
         self.commanded_centideg[joint] = centideg
+
+    def stand(self) -> None:
+        """Have every joint that is driven stand where it is told to be now, up to the end of its order."""
+        for joint in range(self.count):
+            if self.commanded_centideg[joint] != LIMP:
+                self.steer(joint, self.commanded_centideg[joint], self._end_ms[joint])
 
     def off(self, mask: int) -> None:
         """Let these joints go limp."""
@@ -93,7 +100,7 @@ class Joints:
         while not mask >> channel & 1:
             channel += 1
         if not limits.least_centideg <= target_centideg <= limits.most_centideg:
-            limit = limits.least_centideg if target_centideg < 0 else limits.most_centideg
+            limit = limits.least_centideg if target_centideg < limits.least_centideg else limits.most_centideg
             raise Refused(codes.RANGE_LIMIT, channel, target_centideg, limit)
         if hold_ms > limits.hold_max_ms:
             raise Refused(codes.HOLD_LIMIT, channel, hold_ms, limits.hold_max_ms)
@@ -102,19 +109,21 @@ class Joints:
                 self._check_speed(joint, target_centideg, over_ms)
 
     def _check_speed(self, joint: int, target_centideg: int, over_ms: int) -> None:
-        way_centideg = abs(target_centideg - self.commanded_centideg[joint])
-        if way_centideg * 1000 > self._limits.slew_centideg_per_s * over_ms:
-            speed = way_centideg * 1000 // max(1, over_ms)
+        if self._least_ms(self.commanded_centideg[joint], target_centideg) > over_ms:
+            speed = abs(target_centideg - self.commanded_centideg[joint]) * 1000 // max(1, over_ms)
             raise Refused(codes.SLEW_LIMIT, self.first + joint, speed, self._limits.slew_centideg_per_s)
+
+    def _least_ms(self, start_centideg: int, target_centideg: int) -> int:
+        """Return how long a way takes at the slew limit."""
+        slew = self._limits.slew_centideg_per_s
+        return (abs(target_centideg - start_centideg) * 1000 + slew - 1) // slew
 
     def _begin(self, joint: int, target_centideg: int, over_ms: int, hold_ms: int, now_ms: int) -> None:
         start_centideg = self.commanded_centideg[joint]
         if start_centideg == LIMP:
             limits = self._limits
             start_centideg = min(max(self.measured_centideg[joint], limits.least_centideg), limits.most_centideg)
-            way_centideg = abs(target_centideg - start_centideg)
-            slew = limits.slew_centideg_per_s
-            over_ms = max(over_ms, (way_centideg * 1000 + slew - 1) // slew)
+            over_ms = max(over_ms, self._least_ms(start_centideg, target_centideg))
         self._start_centideg[joint] = start_centideg
         self._target_centideg[joint] = target_centideg
         self._begin_ms[joint] = now_ms
@@ -131,5 +140,7 @@ class Joints:
         passed_ms, over_ms = now_ms - self._begin_ms[joint], self._over_ms[joint]
         start_centideg, target_centideg = self._start_centideg[joint], self._target_centideg[joint]
         if passed_ms < over_ms:
+            while over_ms > LONG_MS:
+                passed_ms, over_ms = passed_ms >> 1, over_ms >> 1
             target_centideg = start_centideg + (target_centideg - start_centideg) * passed_ms // over_ms
         self.commanded_centideg[joint] = target_centideg

@@ -31,6 +31,7 @@ class Limbs:
             self.orient = Orient(self.joints, self.camera, profile.orient, profile.servo)
         self._hold_max_ms = profile.servo.hold_max_ms
         self._driven_ms = -SLACKEN_MS  # when a joint was driven last
+        self._told_ms = 0  # for when the joints were told last where to stand
 
     def look(self, now_ms: int) -> None:
         """Read what is measured."""
@@ -44,23 +45,30 @@ class Limbs:
             self.orient.update(now_ms)
         self.joints.update(now_ms)
         self.joints.write()
+        self._told_ms = now_ms
         if self.joints.on_mask:
             self._driven_ms = now_ms
         return self.sense.check(now_ms) if powered else 0
 
     def move(self, mask: int, target_centideg: int, over_ms: int, hold_ms: int, now_ms: int) -> None:
         """Move joints as ordered, or raise Refused; a loop that held them ends."""
-        self.joints.update(now_ms)  # an order sets out from where the last one has come to by now
+        now_ms = self._reached(now_ms)
         self.joints.move(mask, target_centideg, over_ms, hold_ms, now_ms)
-        if self.orient:
+        if self.orient and mask & self.orient.mask:
             self.orient.cancel()
 
     def turn(self, target_centideg: int, time_ms: int, hold_ms: int, now_ms: int) -> None:
         """Regulate the object's angle, or raise Refused."""
         if not self.orient:
             raise Refused(codes.NO_CAMERA)
-        self.joints.update(now_ms)
+        now_ms = self._reached(now_ms)
         self.orient.begin(target_centideg, time_ms, hold_ms, now_ms)
+
+    def stand(self) -> None:
+        """Leave every joint that is driven where it is, up to the end of its order."""
+        if self.orient:
+            self.orient.cancel()
+        self.joints.stand()
 
     def play_move(self, mask: int, target_centideg: int, over_ms: int, now_ms: int) -> None:
         """Move joints as a program orders: they hold as long as any order may."""
@@ -69,6 +77,10 @@ class Limbs:
     def play_turn(self, target_centideg: int, time_ms: int, now_ms: int) -> None:
         """Regulate as a program orders."""
         self.turn(target_centideg, time_ms, self._hold_max_ms, now_ms)
+
+    def sees(self) -> bool:
+        """Return whether the camera knows how the object lies."""
+        return self.camera is not None and self.camera.known
 
     def busy(self, now_ms: int) -> bool:
         """Return whether an order is still being carried out; holding is none."""
@@ -95,3 +107,13 @@ class Limbs:
             return False
         self.orient.lost = False
         return True
+
+    def _reached(self, now_ms: int) -> int:
+        """Bring the joints to where they have come to by then, from where an order sets out; return that time.
+
+        No joint goes back: a program that is behind its time has its orders begin where the joints were told last.
+        """
+        if now_ms - self._told_ms < 0:
+            now_ms = self._told_ms
+        self.joints.update(now_ms)
+        return now_ms
