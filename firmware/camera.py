@@ -3,7 +3,7 @@
 from protocol.variables import UNKNOWN_ANGLE
 
 EVERY = 2  # control steps between two looks: as often as it has a new frame
-AGAIN = 10  # looks that are left out when it does not answer
+AGAIN = 10  # looks that are left out when it does not answer and has not for long
 
 
 class Camera:
@@ -36,7 +36,8 @@ class Camera:
         try:
             is_new = self._driver.read()
         except OSError:
-            self._pause = AGAIN * EVERY  # else its silence would take the time of every step
+            if not self.known:
+                self._pause = AGAIN * EVERY  # else its silence would take the time of every step
             return
         if is_new and self._driver.seen:
             self.fresh = self.known = True

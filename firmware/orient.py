@@ -13,7 +13,8 @@ from protocol import codes
 
 FINE = 1000  # of a centidegree
 ERROR_MAX_CENTIDEG = 3000
-FRAME_MAX_MS = 100  # a frame counts for no longer than that
+FRAME_MAX_MS = 100  # a frame counts for no longer than that,
+FRAME_MS = 10  # and turns the joints by no more than they may turn from one frame to the next
 
 
 class Orient:
@@ -21,6 +22,7 @@ class Orient:
 
     def __init__(self, joints, camera, limits, servo) -> None:
         self.active = False
+        self.mask = 0b11 << joints.first  # of the joints that it turns
         self.lost = False  # it ended for want of the camera, since the core last looked
         self._joints = joints
         self._camera = camera
@@ -81,7 +83,7 @@ class Orient:
         error = self._target_centideg - self._camera.centideg
         error = max(-ERROR_MAX_CENTIDEG, min(ERROR_MAX_CENTIDEG, error))
         change = error * passed_ms // 10 * self._gain // 100
-        most = self._servo.slew_centideg_per_s * passed_ms
+        most = self._servo.slew_centideg_per_s * min(passed_ms, FRAME_MS)
         self._fine -= max(-most, min(most, change))
 
     def _steer(self) -> None:
