@@ -112,7 +112,9 @@ class Commands:
         core, limbs = self._core, self._core.limbs
         if self.upload.needs_attitude and not core.attitude.known:
             raise Refused(codes.NO_ATTITUDE)
-        if self.upload.needs_camera and not (limbs and limbs.camera and limbs.camera.known):
+        if self.upload.needs_camera and not (limbs and limbs.sees()):
+            raise Refused(codes.NO_CAMERA)
+        if self.upload.needs_loop and not limbs.orient:
             raise Refused(codes.NO_CAMERA)
 
     def _begin(self) -> None:

@@ -64,8 +64,10 @@ class Player:
         """Go on as far as the time allows; return the outcome so far. Passes Refused on."""
         self._blind = self._unseen = False
         outcome = GUARDED if self._guarded() else self._run_ops(now_ms)
-        self.outcome = LOST if self._blind else UNSEEN if self._unseen else outcome
-        return self.outcome
+        if outcome != GUARDED:
+            outcome = LOST if self._blind else UNSEEN if self._unseen else outcome
+        self.outcome = outcome
+        return outcome
 
     def _run_ops(self, now_ms: int) -> int:
         for _ in range(OPS_PER_STEP):
@@ -179,6 +181,8 @@ class Player:
         return self._go_on()
 
     def _orient(self, now_ms: int) -> int:
+        if not self._limbs.sees():
+            return UNSEEN
         code, at = self.code, self._at
         self._limbs.play_turn(program.signed(code, at + 1), program.number(code, at + 3, 2), self._cursor_ms)
         return self._go_on()

@@ -15,7 +15,7 @@ class Upload:
     def __init__(self, profile) -> None:
         self.code = bytearray(0)
         self.outlives_host = False  # it runs on when the lease runs out
-        self.needs_attitude = self.needs_camera = False  # as the verification found
+        self.needs_attitude = self.needs_camera = self.needs_loop = False  # as the verification found
         self.request = -1  # number of the start that waits for the verification, -1: none
         self._profile = profile
         self._header = None
@@ -67,4 +67,5 @@ class Upload:
             raise Refused(codes.BAD_CODE, 255, bad.at) from None
         self.needs_attitude = self._check.needs_attitude
         self.needs_camera = self._check.needs_camera
+        self.needs_loop = self._check.needs_loop
         return done

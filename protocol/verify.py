@@ -21,13 +21,13 @@ class Check:
     Every op is whole and known, loops nest, guards are few, a coil is aimed before it is used, and the code ends with
     HALT; else BadProgram. Limits of duty and time are not looked at here: the channels hold every order against them
     as it runs. `needs_attitude` tells whether anything seen so far asks where down is, `needs_camera` whether anything
-    asks how the gripped object lies.
+    asks how the gripped object lies, `needs_loop` whether anything turns it by the camera.
     """
 
     def __init__(self, code: bytes, coils: int, bytes_max: int, joints: int = 0) -> None:
         if not 0 < len(code) <= bytes_max:
             raise program.BadProgram(f"{len(code)} bytes of code, at most {bytes_max}")
-        self.needs_attitude = self.needs_camera = False
+        self.needs_attitude = self.needs_camera = self.needs_loop = False
         self._code = code
         self._coils = (1 << coils) - 1
         self._joints = (1 << coils + joints) - 1 - self._coils
@@ -61,7 +61,8 @@ class Check:
             raise program.BadProgram(f"loops nested {self._depth} deep, at most {program.DEPTH_MAX}", at)
         self._masks(op, at)
         _check_arguments(self._code, at)
-        self.needs_camera = self.needs_camera or op == program.ORIENT
+        self.needs_loop = self.needs_loop or op == program.ORIENT
+        self.needs_camera = self.needs_camera or self.needs_loop
         if op == program.AIM:
             self._aim(at)
         elif op == program.AIMED:
