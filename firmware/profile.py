@@ -7,6 +7,12 @@ import json
 from binascii import crc32
 
 GAIN_MAX_PERMILLE_PER_S = 30_000  # beyond it the loop's integers would not stay small
+SPAN_MAX_CENTIDEG = 36_000
+SLEW_MAX_CENTIDEG_PER_S = 1_000_000
+HOLD_MAX_MS = 1 << 24
+UA_PER_COUNT_MAX = 16_000  # 4095 counts are told as 65535 mA at most
+COUNTS_MAX = 4095
+WAY_MIN_COUNTS = 1000  # of a potentiometer: less would make angles of its noise
 # What stands for the coil of a robot that has none: no order reaches it.
 NO_COIL = {
     "duty_max_permille": 0, "hold_max_ms": 0, "on_max_ms": 0, "rest_ms": 0, "heat_budget_mj": 1, "heat_leak_ms": 1,
@@ -55,6 +61,8 @@ class Profile:
         self.servo = ServoLimits(data["servo"]) if self.joints else None
         self.camera = CameraLimits(data["camera"]) if "camera" in data else None
         self.orient = OrientLimits(data["orient"]) if "orient" in data else None
+        if len(self.joints) < (2 if self.orient else 1 if self.camera else 0):
+            raise ValueError("a camera is of a robot with joints, and the loop of one with two joints")
         self.supply = Supply(data["supply"], data["supply_mv"])
         self.lease_ms = data["session"]["lease_ms"]
         self.lease_max_ms = data["session"]["lease_max_ms"]
@@ -96,6 +104,8 @@ class ServoLimits:
         self.hold_max_ms = data["hold_max_ms"]
         self.stall_ma = data["stall_ma"]
         self.stall_ms = data["stall_ms"]
+        self.astray_centideg = data["astray_centideg"]
+        self.astray_ms = data["astray_ms"]
         self.pulse_hz = data["pulse_hz"]
         self.ua_per_count = data["ua_per_count"]
         self.low_counts = data["low_counts"]
@@ -103,6 +113,7 @@ class ServoLimits:
         self._low_ns = data["low_us"] * 1000
         self._width_us = data["high_us"] - data["low_us"]
         self._span_centideg = data["span_centideg"]
+        self._check(data)
 
     def width_ns(self, centideg: int) -> int:
         """Return the width of the pulse that sends a servo to an angle; its span lies half on either side of 0."""
@@ -113,6 +124,22 @@ class ServoLimits:
         """Return the angle at which the potentiometer reads so many counts."""
         way = self.high_counts - self.low_counts
         return (counts - self.low_counts) * self._span_centideg // way - self._span_centideg // 2
+
+    def _check(self, data: dict) -> None:
+        """Raise ValueError where a number on the way would be too large for its place, or a pulse no pulse."""
+        half_centideg = self._span_centideg // 2
+        for name, fits in (
+            ("span_centideg", 0 < self._span_centideg <= SPAN_MAX_CENTIDEG and self._span_centideg % 100 == 0),
+            ("least_centideg", -half_centideg <= self.least_centideg < self.most_centideg),
+            ("most_centideg", self.most_centideg <= half_centideg),
+            ("slew_centideg_per_s", 0 < self.slew_centideg_per_s <= SLEW_MAX_CENTIDEG_PER_S),
+            ("hold_max_ms", 0 < self.hold_max_ms <= HOLD_MAX_MS),
+            ("high_us", 0 < data["low_us"] < data["high_us"] < 1_000_000 // self.pulse_hz),
+            ("ua_per_count", 0 < self.ua_per_count <= UA_PER_COUNT_MAX),
+            ("high_counts", 0 <= self.low_counts <= self.high_counts - WAY_MIN_COUNTS <= COUNTS_MAX - WAY_MIN_COUNTS),
+        ):
+            if not fits:
+                raise ValueError(f"servo: {name} does not go with the others")
 
 
 class CameraLimits:
