@@ -120,7 +120,7 @@ class Control:
         if self.selftest.running:
             self.selftest.step()
             return self._doubted(self.selftest.code) and self._pressed()
-        found = self.patrol.step()
+        found = 0 if self.guard.joints_draw else self.patrol.step()  # it would take the servos' current for a coil's
         if not found:
             return 0
         self._doubted(found)

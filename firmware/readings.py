@@ -38,10 +38,10 @@ class Readings:
             USUAL_SCALARS, core.state, core.player.step, sense.supply_mv, sense.current_ma, sense.board_decidegc,
             attitude.roll_decideg(), attitude.pitch_decideg(), attitude.down_channel(),
         )  # fmt: skip
-        if self._limbs:
-            return scalars + self._of_joints()
-        degrees = struct.pack(self._degrees, *[millidegc // 100 for millidegc in sense.temperature_millidegc])
-        return scalars + bytes(self._channels.duty_permille) + degrees
+        if self._channels.count:
+            degrees = struct.pack(self._degrees, *[millidegc // 100 for millidegc in sense.temperature_millidegc])
+            scalars += bytes(self._channels.duty_permille) + degrees
+        return scalars + self._of_joints() if self._limbs else scalars
 
     def _of_joints(self) -> bytes:
         joints = self._limbs.joints
