@@ -158,7 +158,7 @@ class Converter:
 
     def __init__(self, servos) -> None:
         self.ma = [100, 100]
-        self.stuck_counts = {}  # of an input, whatever the joint does
+        self.stuck_counts = {4: 62, 5: 2048}  # of an input, whatever the joint does; of a third one from the start
         self.rest_centideg = [0, 0]  # where a limp joint stands
         self._servos = servos
 
@@ -226,6 +226,7 @@ class Table:
         self.supply = Monitor(self)
         self.coil_mohm = [10_850] * 16  # cold, with its wires, 9500 mohm when it is hot; 0: open
         self.stuck_mask = 0  # coils whose MOSFET conducts whatever its gate says
+        self.servo_ma = 0  # what the servos take from the same supply
         self.welded = False
         self.alerting = False
         self.waited_us = 0
@@ -264,7 +265,7 @@ class Table:
             return 0
         shares = [1000 if self.stuck_mask >> i & 1 else duty for i, duty in enumerate(self.chip.duty_permille)]
         rows = zip(shares, self.coil_mohm, strict=True)
-        return sum(share * self.supply.mv // mohm for share, mohm in rows if mohm)
+        return self.servo_ma + sum(share * self.supply.mv // mohm for share, mohm in rows if mohm)
 
     def alert(self) -> bool:
         return self.alerting

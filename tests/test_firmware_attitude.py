@@ -8,6 +8,7 @@ import pytest
 
 from firmware.attitude import Attitude, Blind
 from tests.gait_scripts import BALL
+from tests.small_integers import Small
 
 ONE_G = 8197
 DPS = 1 / 0.035
@@ -155,28 +156,6 @@ def test_a_robot_without_a_sensor_knows_nothing():
     blind = Blind()
 
     assert (blind.known, blind.lost, blind.down_channel(), blind.pitch_decideg()) == (False, False, 255, 0)
-
-
-class Small(int):
-    """An integer that stays small through a calculation, or complains."""
-
-    largest = 0
-
-    def __new__(cls, value):
-        assert -(1 << 30) <= value < 1 << 30, value
-        cls.largest = max(cls.largest, abs(value))
-        return super().__new__(cls, value)
-
-
-def _kept(name):
-    def operate(self, other=0):
-        return Small(getattr(int, name)(int(self), int(other)) if name != "__neg__" else -int(self))
-
-    return operate
-
-
-for _name in ("add", "radd", "sub", "rsub", "mul", "rmul", "rshift", "lshift", "floordiv", "neg"):
-    setattr(Small, f"__{_name}__", _kept(f"__{_name}__"))
 
 
 class Extreme:
