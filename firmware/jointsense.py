@@ -1,7 +1,8 @@
 """What a joint's servo says of itself, through a converter: its angle by its potentiometer, and its current.
 
-A joint that takes its stall current for long cannot turn as it is told; a potentiometer that reads what none of its
-positions gives is broken or cut off.
+A joint that takes its stall current for long cannot turn as it is told; one that stands elsewhere than it was told for
+longer than any lag behind a quick move has no torque; a potentiometer that reads what none of its positions gives is
+broken or cut off.
 """
 
 from array import array
@@ -27,15 +28,17 @@ class JointSense:
         self._counts = array("H", [0] * joints.count)
         self._broken = array("B", [0] * joints.count)
         self._strained_ms = array("i", [0] * joints.count)
+        self._followed_ms = array("i", [0] * joints.count)  # when it was last where it was told, or limp
 
     def read(self, now_ms: int) -> None:
         """Read angle and current of one joint in its turn."""
         joints, limits, joint = self._joints, self._limits, self._turn
         self._turn = joint + 1 if joint + 1 < joints.count else 0
         row = self._rows[joint]
+        is_on = joints.on_mask >> joints.first + joint & 1
         current_ma = self._converter.counts(row.current) * limits.ua_per_count // 1000
         joints.current_ma[joint] = current_ma
-        if current_ma < limits.stall_ma or not joints.on_mask >> joints.first + joint & 1:
+        if current_ma < limits.stall_ma or not is_on:
             self._strained_ms[joint] = now_ms
         counts = self._converter.counts(row.angle)
         self._counts[joint] = counts
@@ -44,6 +47,8 @@ class JointSense:
             joints.measured_centideg[joint] = limits.angle_centideg(counts)
         elif self._broken[joint] < BROKEN_READS:
             self._broken[joint] += 1
+        if not is_on or abs(self._off_centideg(joint)) <= limits.astray_centideg:
+            self._followed_ms[joint] = now_ms
 
     def check(self, now_ms: int) -> int:
         """Return the code of a fault, or 0."""
@@ -54,6 +59,8 @@ class JointSense:
         for joint in range(joints.count):
             if now_ms - self._strained_ms[joint] > self._limits.stall_ms:
                 return self._fault(codes.STALL, joint, joints.current_ma[joint])
+            if now_ms - self._followed_ms[joint] > self._limits.astray_ms:
+                return self._fault(codes.ASTRAY, joint, self._off_centideg(joint))
         return 0
 
     def broken(self) -> int:
@@ -66,6 +73,10 @@ class JointSense:
     def counts(self, channel: int) -> int:
         """Return the last reading of a joint's potentiometer."""
         return self._counts[channel - self._joints.first]
+
+    def _off_centideg(self, joint: int) -> int:
+        """Return how far a joint that is driven stands from where it was told."""
+        return self._joints.measured_centideg[joint] - self._joints.commanded_centideg[joint]
 
     def _fault(self, code: int, joint: int, value: int) -> int:
         self.channel = self._joints.first + joint

@@ -68,6 +68,8 @@ class ServoLimits:
     hold_max_ms: int
     stall_ma: int
     stall_ms: int
+    astray_centideg: int
+    astray_ms: int
     pulse_hz: int
     low_us: int
     high_us: int

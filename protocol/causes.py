@@ -381,6 +381,12 @@ CODES = (
         "The regulation ended and the joints hold; a program that needed it was aborted.",
         "Check the camera, its bus and its view of the object.",
     ),
+    Code(
+        codes.ASTRAY, "F28", "centideg",
+        "A joint stands elsewhere than it was told, for too long: its servo gives no torque, or too little.",
+        "Everything off, latched until clear; joints are limp.",
+        "Check the servo, its gear, its horn and its supply, then `softrig clear`.",
+    ),
 )  # fmt: skip
 
 

@@ -154,10 +154,11 @@ class Servo:
 
 
 class Converter:
-    """What a converter reads: the angle of a joint that follows its pulses at once, and its current."""
+    """What a converter reads: the angle of a joint that follows its pulses, all but a `lag` at each look; its current."""
 
     def __init__(self, servos) -> None:
         self.ma = [100, 100]
+        self.lag = 0.0
         self.stuck_counts = {4: 62, 5: 2048}  # of an input, whatever the joint does; of a third one from the start
         self.rest_centideg = [0, 0]  # where a limp joint stands
         self._servos = servos
@@ -169,7 +170,8 @@ class Converter:
             return self.ma[channel] * 1000 // 1611 + 1
         servo = list(self._servos.values())[channel - 2]
         if servo.width_ns is not None:
-            self.rest_centideg[channel - 2] = round((servo.width_ns - 1_500_000) * 9 / 1000)
+            told_centideg = (servo.width_ns - 1_500_000) * 9 / 1000
+            self.rest_centideg[channel - 2] += (told_centideg - self.rest_centideg[channel - 2]) * (1 - self.lag)
         return 410 + round((self.rest_centideg[channel - 2] + 9000) * 3276 / 18000)
 
 

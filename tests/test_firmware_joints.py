@@ -257,3 +257,29 @@ def test_current_that_flows_on_while_every_joint_is_limp_trips(armed):
     limp_at_last(armed, ma=4000, for_ms=400)
 
     assert [trip.code for trip in armed.events("tripped")] == [codes.STRAY_CURRENT]
+
+
+def test_a_joint_that_stands_elsewhere_than_it_was_told_for_too_long_trips(armed):
+    armed.move(L, 800, over_ms=500, hold_ms=60000)
+    armed.run(600)
+    armed.board.converter.stuck_counts[3] = 410 + round(9500 * 3276 / 18000)  # it fell back to 5 degrees
+
+    armed.run(1450)
+    early = armed.events("tripped")
+    armed.run(100)
+
+    (trip,) = armed.events("tripped")
+    assert early == []
+    assert (trip.code, trip.channel, centideg(armed, "L")) == (codes.ASTRAY, 1, None)
+    assert trip.value == pytest.approx(-300, abs=6)
+
+
+def test_a_joint_that_lags_behind_a_quick_move_is_not_astray(armed):
+    """A servo of 60 rad/s lags by v / 30 s behind a speed v: by 1.5 deg at 45 deg/s, for the 60 deg of its range."""
+    armed.board.converter.lag = 0.75
+    armed.move(L, -3000, over_ms=500, hold_ms=60000)
+    armed.run(600)
+    armed.move(L, 3000, over_ms=1400, hold_ms=60000)
+    armed.run(2000)
+
+    assert not armed.events("tripped")

@@ -200,7 +200,8 @@ enum {
     SOFTRIG_CODES_F24 = 124,
     SOFTRIG_CODES_F25 = 125,
     SOFTRIG_CODES_F26 = 126,
-    SOFTRIG_CODES_F27 = 127
+    SOFTRIG_CODES_F27 = 127,
+    SOFTRIG_CODES_F28 = 128
 };
 
 /* Bytes that belong to somebody else. */
