@@ -132,7 +132,7 @@ def test_a_script_that_the_checker_refuses_for_its_speed_the_robot_refuses_too()
         Bare(made[1].code).run()
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(bodies, rests)
 def test_what_the_checker_passes_of_joints_is_never_refused_and_never_beyond_its_worst_case(body, rest):
     worst = report(body, profile=hand_robot())
