@@ -37,7 +37,8 @@ ROUND = {
 JOINTS = [{"label": label, "kind": "servo", "pin": 8 + i, "current": i, "angle": 2 + i} for i, label in enumerate("RL")]
 SERVO = {
     "least_centideg": -3000, "most_centideg": 3000, "slew_centideg_per_s": 10000, "hold_max_ms": 5000,
-    "stall_ma": 2400, "stall_ms": 300, "pulse_hz": 200, "low_us": 500, "high_us": 2500, "span_centideg": 18000,
+    "stall_ma": 2400, "stall_ms": 300, "astray_centideg": 500, "astray_ms": 500,
+    "pulse_hz": 200, "low_us": 500, "high_us": 2500, "span_centideg": 18000,
     "ua_per_count": 1611, "low_counts": 410, "high_counts": 3686,
 }  # fmt: skip
 
