@@ -4,11 +4,15 @@ from math import inf, nan
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from hil_sim.physics.hand.fingertip import HandError, OutOfRange
 from hil_sim.physics.hand.grasp import grasp
 from hil_sim.physics.hand.hand import advance, hand_of
-from tests.hand_samples import CUBE, FIRM, PAPER, joints
+from hil_sim.physics.hand.numbers import CONTACTS
+from hil_sim.physics.hand.numbers import MOTIONS as MOTION_NAMES
+from tests.hand_samples import CUBE, FIRM, PAPER, joints, narrow
 
 TICK = 0.005
 REAL = CUBE._replace(contact="coulomb", mu=0.6, g=9.81, I_idle=0.1, I_stall=2.4)
@@ -165,6 +169,29 @@ def test_the_length_of_a_tick_does_not_matter(motion):
 
     assert ends[0] == pytest.approx(ends[1], abs=1e-6)
     assert ends[2] == pytest.approx(ends[1], abs=1e-6)
+
+
+@settings(deadline=None)
+@given(
+    inward=st.lists(st.floats(-1, 4), min_size=1, max_size=6),
+    swing=st.floats(-15, 15),
+    limp=st.integers(0, 12),
+    contact=st.sampled_from(CONTACTS),
+    motion=st.sampled_from(MOTION_NAMES),
+    w=st.floats(0.005, 0.05),
+)
+def test_whatever_it_is_told_a_hand_says_numbers_or_out_of_range(inward, swing, limp, contact, motion, w):
+    hand = hand_of(narrow(w, REAL)._replace(contact=contact, motion=motion))
+    try:
+        for i, turn in enumerate(inward):
+            for _ in range(20):
+                advance(hand, (nan, nan) if i == limp else joints(turn, swing * (i % 3 - 1)), TICK)
+    except OutOfRange:
+        return
+
+    assert np.isfinite([*hand.pose, *hand.N, *hand.T, *hand.tau, *hand.motor, hand.elastic, hand.K_psi]).all()
+    assert (np.abs(hand.slide) <= hand.d).all()
+    assert np.abs(hand.motor).max() <= REAL.stall
 
 
 def test_a_hand_is_a_function_of_its_commands_alone():

@@ -4,10 +4,10 @@
     advance(hand, (0.14, -0.14), 0.005)      # R, L [rad]; NaN: limp
     hand.pose, hand.d, hand.tau, hand.current
 
-Everything is in SI units, arrays of two hold R first. `advance` raises OutOfRange when a tip is pressed to the edge of
-its plate and NoEquilibrium when the object finds no rest (both a HandError, a ValueError): the hand is then as it was
-when that happened, and the run is over, as the model says nothing beyond. What loses contact is no error: the object
-stays on its stand, `gripped` is False.
+Everything is in SI units, arrays of two hold R first. `advance` raises OutOfRange, a HandError and so a ValueError,
+when a tip is pressed to the edge of its plate: the hand is then as it was when that happened, and the run is over, as
+the model says nothing beyond. What loses contact, slides or finds no rest is no error: the object stays on its stand,
+and `gripped` is False.
 """
 
 from collections.abc import Sequence
@@ -179,7 +179,11 @@ def hand_of(numbers: HandNumbers, q: Sequence[float] = (0.0, 0.0)) -> Hand:
     """
     prepare(creep)
     hand = Hand(numbers, q)
-    _judge(hand, creep(hand.fingers, hand.servo, nan, nan, 0.0, hand.step, hand.state, hand.read, hand.work))
+    limp = (hand.fingers, hand.servo, nan, nan, 0.0, hand.step)
+    _judge(hand, creep(*limp, hand.state, hand.read, hand.work))
+    if numbers.motion == "dynamic":
+        prepare(march)
+        _judge(hand, march(*limp, hand.state, hand.read, hand.work, hand.rows))
     return hand
 
 
@@ -200,7 +204,7 @@ def advance(hand: Hand, commands: Sequence[float], dt: float) -> None:
     OutOfRange
         A tip is pressed to the edge of its plate
     NoEquilibrium
-        The object finds no rest
+        The object in motion has turned by half a turn
     HandError
         A command that is infinite, or a time that is negative or no number
     """

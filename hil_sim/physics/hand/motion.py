@@ -84,8 +84,8 @@ def longest_step(f: Fingers) -> float:
     h = min(STEP, 0.5 / sqrt(squared), 1.5 / max(1e-9, max(f.tau, f.tau_t) * squared))
     if h < STEP_MIN:
         raise HandError(
-            f"m = {f.m:g} kg is too light for motion 'dynamic': it would take steps of {1e6 * h:.2g} us,"
-            f" at least {1e6 * STEP_MIN:g} us; choose 'quasi-static'"
+            f"an object of m = {f.m:g} kg and w = {1e3 * f.w:g} mm, h = {1e3 * f.h:g} mm is too light for motion"
+            f" 'dynamic': it takes steps of {1e6 * h:.2g} us, at least {1e6 * STEP_MIN:g} us; choose 'quasi-static'"
         )
     return h
 

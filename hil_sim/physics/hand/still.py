@@ -11,7 +11,7 @@ from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.hand.fingertip import deepest
 from hil_sim.physics.hand.friction import slipped
 from hil_sim.physics.hand.geometry import meet
-from hil_sim.physics.hand.grasp import DEEP_R, HELD, LOST_L, LOST_R, SLIDES, correction, rest
+from hil_sim.physics.hand.grasp import DEEP_L, DEEP_R, HELD, correction, rest
 from hil_sim.physics.hand.numbers import FRICTIONLESS, Fingers, Servo
 from hil_sim.physics.hand.press import press
 from hil_sim.physics.hand.rolling import FOUND, NEW, OLD, SHEARED, balance, follow, stiffness
@@ -90,7 +90,7 @@ def relax(f: Fingers, q_r: float, q_l: float, state: Array, read: Array, work: A
     read[STIFFNESS] = 0.0
     if state[GRIPPED] > 0.0:
         status = hold(f, q_r, q_l, state, read, work)
-        if status not in (HELD, LOST_R, LOST_L, SLIDES):
+        if status in (DEEP_R, DEEP_L):
             return status
         state[GRIPPED] = 1.0 if status == HELD else 0.0
     if state[GRIPPED] == 0.0 and lie(f, q_r, q_l, state):
