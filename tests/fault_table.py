@@ -23,7 +23,7 @@ ORDERS = {  # what is going on: the script, and the time after connecting within
     "a guard trips": ("guard any.temperature > 40 C\nfire {one} at 100 % for 900 ms", (0, 50)),
     "attitude is asked for": ("guard roll > 80 deg\nfire {one} at 5 % for 3 s", (300, 1500)),
     "a joint moves": ("move R to -20 deg over 3 s", (700, 2000)),
-    "joints hold": (GRIP + "wait 3 s", (1200, 2500)),
+    "joints hold": (GRIP + "wait 5 s", (1200, 2500)),
     "an object is turned": (GRIP + "orient 1 deg for 3 s", (1200, 2500)),
 }
 RECOVERIES = {
@@ -97,6 +97,7 @@ TWO, FULL, IDLE, BEFORE, GUARDED, ATTITUDE, MOVING, HOLDING, TURNING = (
 )
 GOES_ON = (None, "done", "none")
 FINGERS = "fingers"
+ASTRAY_MS = 1700  # to be pushed away, the profile's astray_ms, and the next look
 POT_MS = 115  # one joint is read in a step: ten readings, one more, and the supply
 PULSES_MS = 16  # a stuck MOSFET: from the supply's switch to the look
 
@@ -253,7 +254,11 @@ ROWS = (
         robot=FINGERS,
     ),
     Row("joint-jam:R", HOLDING, "", *GOES_ON, "A joint that holds does not turn.", robot=FINGERS),
-    Row("servo-dead:R", HOLDING, "", *GOES_ON, "Nothing tells but the joint's angle.", robot=FINGERS),
+    Row(
+        "servo-dead:R", HOLDING, "F28", ASTRAY_MS, "fault", "clear, mend",
+        "The grip pushes the finger away; 1.5 degrees off for 1.5 s are more than any lag. One in place is not seen.",
+        robot=FINGERS,
+    ),
     Row(
         "pot-open:R", HOLDING, "F26", POT_MS, "fault", "clear, mend",
         "A reading that no position gives, ten times.", "F26", robot=FINGERS,

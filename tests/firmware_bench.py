@@ -154,7 +154,7 @@ class Servo:
 
 
 class Converter:
-    """What a converter reads: the angle of a joint that follows its pulses, all but a `lag` at each look; its current."""
+    """What a converter reads: the angle of a joint that follows its pulses but for a `lag`, and its current."""
 
     def __init__(self, servos) -> None:
         self.ma = [100, 100]
