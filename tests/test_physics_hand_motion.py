@@ -117,6 +117,19 @@ def test_without_friction_a_slow_swing_is_a_row_of_rests_too():
     assert moving.along == "undetermined"
 
 
+@pytest.mark.parametrize("contact", ["stick", "coulomb", "frictionless"])
+def test_the_object_moves_at_its_speed(contact):
+    hand = hand_of(DAMPED._replace(contact=contact, mu=0.1), joints(2.5, 0))
+    poses, speeds = [], []
+    for share in np.linspace(0, 1, 300):
+        advance(hand, joints(2.5, 10 * share), 0.0005)
+        poses.append(hand.pose)
+        speeds.append(hand.state[RATES + X : RATES + PSI + 1].copy())
+    moved = (np.array(poses)[2:] - np.array(poses)[:-2]) / 0.001
+
+    assert moved == pytest.approx(np.array(speeds)[1:-1], abs=0.02 * np.abs(moved).max())
+
+
 def test_an_object_that_its_grip_does_not_carry_falls_and_the_stand_has_it_at_rest_again():
     hand = hand_of(DAMPED._replace(contact="coulomb", mu=0.6, g=9.81), joints(2.5, 0))
     heights = []
