@@ -38,6 +38,7 @@ $(READY): pyproject.toml
 	@echo "Compiling the physics for this machine"
 	@$(BIN)/softrig info --robot sim:circular >/dev/null
 	@$(BIN)/softrig info --robot sim:sphere-b >/dev/null
+	@$(BIN)/softrig info --robot sim:fingers-experiment >/dev/null
 	@touch $@
 
 test: $(READY)
