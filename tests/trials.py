@@ -16,7 +16,7 @@ from typing import Any
 
 from hil_sim.bench import Bench
 from hil_sim.faults.happening import Happening, schedule
-from hil_sim.faults.table import CAMERA, JOINT, LABEL, TABLE, Argument, Fault
+from hil_sim.faults.table import BATTERY, CAMERA, IMU, JOINT, LABEL, TABLE, Argument, Fault
 from hil_sim.link import BOOTED_US, SimLink, open_link
 from hil_sim.robotfile import RobotFile, load
 from host.errors import SoftrigError
@@ -24,8 +24,7 @@ from host.robot import Robot
 from tests.jobs import JOBS, cleared, job_of, scripts_of
 from tests.witness import Witness
 
-FAULTS = tuple(fault for fault in TABLE if fault.argument != JOINT and fault.of != CAMERA)  # of robots with coils
-ROBOTS = (("circular", 7), ("sphere-b", 2), ("sphere-a", 1))
+ROBOTS = (("circular", 7), ("sphere-b", 2), ("sphere-a", 1), ("fingers", 2), ("fingers-experiment", 2))
 MOVING = 0.03  # share of the trials whose body moves: each costs many others
 BUSY_US = 4_000_000  # faults come within so long from the start
 SETTLE_US = 2_200_000  # and are given so long to be dealt with
@@ -55,7 +54,7 @@ class Outcome:
     wrong: tuple[str, ...]
     told: str  # the robot's state and last fault after it all
     error: str  # with which the host ended, if it did
-    off_ms: float | None  # from the fault until every coil was off, None: none was on
+    off_ms: float | None  # from the fault until every coil and joint was off, None: none was on
 
     def row(self) -> dict[str, Any]:
         """Return it as one flat record."""
@@ -65,16 +64,15 @@ class Outcome:
 def trial_of(number: int) -> Trial:
     """Return the trial of that number."""
     draw = Random(f"trial {number}")
-    fault = draw.choice(FAULTS)
+    fault = draw.choice(TABLE)
     robots = {name: weight for name, weight in ROBOTS if _has(name, fault)}
     robot = draw.choices(list(robots), list(robots.values()))[0]
-    body = "moving" if draw.random() < MOVING else "still&set=start.settle_s:0"
-    labels = _file(robot).labels
+    body = body_of(robot, draw.random() < MOVING)
     job = draw.choice((*JOBS, *scripts_of(robot)))
     for_us = round(_between(draw, *FOR_US)) if fault.ends and draw.random() < 0.5 else None
     at_us = draw.randrange(BOOTED_US, BOOTED_US + BUSY_US)
-    name = fault.name + _argument(draw, fault.argument, labels)
-    return Trial(number, f"sim:{robot}?body={body}&seed={number}", job, name, at_us, for_us)
+    name = fault.name + _argument(draw, fault.argument, _file(robot))
+    return Trial(number, f"sim:{robot}?{body}seed={number}", job, name, at_us, for_us)
 
 
 def run(trial: Trial) -> Outcome:
@@ -90,7 +88,7 @@ def run(trial: Trial) -> Outcome:
     crashed = [f"the firmware crashed: {crash.error}" for crash in bench.crashes]
     wrong += [*unreached, *witness.broken(), *crashed]
     link.close()
-    return Outcome(trial, tuple(wrong), told, error, off_ms(bench, trial.at_us))
+    return Outcome(trial, tuple(wrong), told, error, off_ms(witness, trial.at_us))
 
 
 def row_of(number: int) -> dict[str, Any]:
@@ -145,14 +143,19 @@ def _reached(link: SimLink) -> tuple[str, list[str]]:
     return found, []
 
 
-def off_ms(bench: Bench, at_us: int) -> float | None:
-    """Return how long after a time the last of the coils that were on then went off, None when none was."""
+def off_ms(witness: Witness, at_us: int) -> float | None:
+    """Return how long after a time the last of the coils and joints that were on then went off, None when none was."""
     ends = []
-    for coil in bench.coils:
-        before = [duty for time_us, duty in coil.history if time_us <= at_us]
+    for history in witness.driven():
+        before = [duty for time_us, duty in history if time_us <= at_us]
         if before and before[-1]:
-            ends += [time_us for time_us, duty in coil.history if time_us > at_us and not duty][:1]
+            ends += [time_us for time_us, duty in history if time_us > at_us and not duty][:1]
     return max(ends) / 1e3 - at_us / 1e3 if ends else None
+
+
+def body_of(robot: str, moves: bool = False) -> str:
+    """Return the options of an address that say how a body moves; fingers cost so little that they always do."""
+    return "" if _file(robot).joints else "body=moving&" if moves else "body=still&set=start.settle_s:0&"
 
 
 @cache
@@ -163,17 +166,17 @@ def _file(robot: str) -> RobotFile:
 def _has(robot: str, fault: Fault) -> bool:
     """Return whether a robot has what a fault breaks."""
     file = _file(robot)
-    return (file.battery is not None or not fault.name.startswith("battery")) and (
-        file.sensors.imu > 0 or not fault.name.startswith("imu")
-    )
+    parts = {BATTERY: file.battery is not None, IMU: file.sensors.imu > 0, CAMERA: file.camera is not None}
+    channels = {LABEL: file.labels, JOINT: file.joints}
+    return parts.get(fault.of, True) and bool(channels.get(fault.argument, True))
 
 
-def _argument(draw: Random, argument: Argument, labels: tuple[str, ...]) -> str:
+def _argument(draw: Random, argument: Argument, file: RobotFile) -> str:
     """Return what stands after the colon, with it."""
     if argument.words:
         return draw.choice(("", *(f":{word}" for word in argument.words)))
-    if argument == LABEL:
-        return f":{draw.choice(labels)}"
+    if argument in (LABEL, JOINT):
+        return f":{draw.choice(file.labels if argument == LABEL else file.joints)}"
     if not argument.form:
         return ""
     if argument.least < 0:

@@ -47,6 +47,10 @@ class Witness:
         run = self.run()
         return [] if run is None else list(broken(run))
 
+    def driven(self) -> list[list[tuple[int, float]]]:
+        """Return of each coil and each servo from when on it was on (coils: the duty) or off."""
+        return [coil.history for coil in self.bench.coils] + [each.history for each in self._pulses.values()]
+
     def run(self) -> Run | None:
         """Return the run so far, or None when the flash holds no robot of ours."""
         bench = self.bench
