@@ -130,6 +130,7 @@ def _session(table: Table) -> dict[str, object]:
         "other_version": codes.OTHER_VERSION,
         "lease_expired": codes.LEASE_EXPIRED,
         "busy": f"R15, {codes.BUSY}",
+        "range_limit": codes.RANGE_LIMIT,
         "slew_limit": codes.SLEW_LIMIT,
         "no_camera": codes.NO_CAMERA,
         "not_held": codes.NOT_HELD,

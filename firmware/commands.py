@@ -72,7 +72,7 @@ class Commands:
             self._begins = NOT
 
     def _tested(self) -> None:
-        """Arm or calibrate after a self-test in which every coil was whole, else refuse with its code."""
+        """Arm or calibrate after a self-test in which every coil and joint was whole, else refuse with its code."""
         core, test = self._core, self._core.control.selftest
         request, self._arming = self._arming, -1
         without = core.channels.without_mask

@@ -85,13 +85,13 @@ class Core:
         return out
 
     def arm(self, lease_ms: int) -> None:
-        """Allow orders while the lease lives: every coil has been tested, and the supply is on."""
+        """Allow orders while the lease lives: every coil and joint has been tested, and the supply is on."""
         self.lease_ms = lease_ms
         self.state = messages.ARMED
         self._armed_ms = self.now_ms
 
     def disarm(self, code: int = 0, value: int = 0) -> None:
-        """All coils off, supply off, lease returned; a tripped robot stays tripped."""
+        """Everything off, supply off, lease returned; a tripped robot stays tripped."""
         self.control.all_off(self.now_ms)
         self.commands.give_up(codes.NOT_ARMED)
         if self.state in (messages.ARMED, messages.RUNNING):
@@ -101,7 +101,7 @@ class Core:
         self.lease_ms = 0
 
     def trip(self, code: int, channel: int = 255, value: int = 0) -> None:
-        """All coils off at once, supply off, latched until `clear`; the first cause is the one that stays."""
+        """Everything off at once, supply off, latched until `clear`; the first cause is the one that stays."""
         self.control.all_off(self.now_ms)
         self.commands.give_up(code)
         if self.state != messages.TRIPPED:
@@ -173,7 +173,7 @@ class Core:
         return self.session if self.lease_left_ms() or self.state == messages.RUNNING else 0
 
     def at_rest(self) -> bool:
-        """Return whether no coil is on and none can be: the time to write to the flash."""
+        """Return whether nothing is on and nothing can be: the time to write to the flash."""
         test = self.control.selftest
         quiet = self.control.driven_mask() == 0 and not (test.running or test.done)
         return quiet and self.state in (messages.IDLE, messages.TRIPPED)

@@ -34,7 +34,7 @@ class Greetings:
             self._nak(received.kind, codes.BAD_PAYLOAD)
 
     def stopped(self, coils: int) -> None:
-        """Say, before all else, that the stop pattern arrived and every coil is off."""
+        """Say, before all else, that the stop pattern arrived and everything is off."""
         core = self._core
         now = core.now_ms & 0xFFFFFFFF
         payload = messages.STOPPED.pack(state=core.state, code=core.code, coils=coils, now_ms=now)

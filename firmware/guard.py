@@ -1,4 +1,4 @@
-"""Budgets and interlocks: whatever the orders say, these conditions switch every coil off.
+"""Budgets and interlocks: whatever the orders say, these conditions switch everything off.
 
 Checked on every control step, none of them can be turned off over the wire. Independent of this file stand each
 order's own end (channels), the lease (core) and the hardware behind the heartbeat (board).

@@ -1,6 +1,6 @@
 """What the robot keeps on its flash, and the orders about it: faults and settings.
 
-The flash is written only while no coil is on and none can be: writing stops the processor for tens of milliseconds.
+The flash is written only while nothing is on and nothing can be: writing stops the processor for tens of milliseconds.
 
     records = Records(core)
     records.orders()

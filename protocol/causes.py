@@ -11,15 +11,15 @@ from protocol import codes
 Code = namedtuple("Code", ("number", "name", "unit", "cause", "did", "todo"))
 
 NOTHING = "Nothing changed."
-ALL_OFF = "All coils off, latched until clear."
-FOUND = "Before arming: refused, everything off. While armed: all coils off, latched until clear."
+ALL_OFF = "Everything off, latched until clear."
+FOUND = "Before arming: refused, everything off. While armed: everything off, latched until clear."
 
 CODES = (
     Code(
         codes.NOT_ARMED, "R01", "",
         "The robot is not armed.",
         NOTHING,
-        "Arm first; `run` and `fire` do it themselves.",
+        "Arm first; `run`, `fire`, `move` and `orient` do it themselves.",
     ),
     Code(
         codes.TRIPPED, "R02", "",
@@ -143,7 +143,7 @@ CODES = (
     ),
     Code(
         codes.NOT_WHILE_ARMED, "R22", "",
-        "The robot keeps records only while every coil is off and its supply is open.",
+        "The robot keeps records only while everything is off and the supply is open.",
         NOTHING,
         "Disarm first.",
     ),
@@ -197,7 +197,7 @@ CODES = (
     ),
     Code(
         codes.RANGE_LIMIT, "R31", "centideg",
-        "The angle is outside the joint's range.",
+        "The angle is outside the joint's range, or both joints are swung too far for `orient` to begin.",
         NOTHING,
         "Ask for an angle within it; the limits are in the robot's profile.",
     ),
@@ -234,7 +234,7 @@ CODES = (
     Code(
         codes.LEASE_EXPIRED, "F03", "ms",
         "Nothing was heard from the host for the lease.",
-        "All coils off, disarmed.",
+        "Everything off, disarmed.",
         "Check the cable and the host; then run again.",
     ),
     Code(
@@ -253,18 +253,18 @@ CODES = (
         codes.OVER_CURRENT, "F06", "mA",
         "The supply current is above its limit.",
         ALL_OFF,
-        "Look for a shorted coil; fire fewer at once.",
+        "Look for a shorted coil, or a servo that takes too much; drive fewer at once.",
     ),
     Code(
         codes.SUPPLY_LOW, "F07", "mV",
         "The supply voltage is below its limit.",
         ALL_OFF,
-        "Charge or replace the supply; fire fewer at once.",
+        "Charge or replace the supply; drive fewer at once.",
     ),
     Code(
         codes.CHIP, "F08", "",
         "A chip does not answer or has lost its settings.",
-        "Coil supply switched off, latched.",
+        "Supply switched off, latched.",
         "Check the wiring of the bus, then `softrig clear`.",
     ),
     Code(
@@ -282,19 +282,19 @@ CODES = (
     Code(
         codes.WAIT_TIMEOUT, "F11", "ms",
         "A wait of the program ran out of time.",
-        "Program ended, all coils off, still armed.",
+        "Program ended, all coils off, joints hold, still armed.",
         "Give it more time, or write `else continue`.",
     ),
     Code(
         codes.WATCHDOG, "F12", "",
         "The firmware hung, or its clock had run for six days, and it was restarted.",
-        "Coils off by hardware, disarmed.",
+        "Everything off by hardware, disarmed.",
         "Keep the log and report it.",
     ),
     Code(
         codes.STRAY_CURRENT, "F13", "mA",
-        "Current flows although every coil is off.",
-        "Before arming: refused. Else latched. The coil supply is switched off.",
+        "Current flows although everything is off.",
+        "Before arming: refused. Else latched. The supply is switched off.",
         "A MOSFET is stuck: replace it.",
     ),
     Code(
@@ -311,14 +311,14 @@ CODES = (
     ),
     Code(
         codes.SUPPLY_HIGH, "F16", "mV",
-        "The supply voltage is above its limit: the coils would burn.",
+        "The supply voltage is above its limit: what hangs on it would burn.",
         ALL_OFF,
         "Set the supply to the robot's own voltage; `softrig info` prints it.",
     ),
     Code(
         codes.ATTITUDE, "F17", "",
         "The attitude sensor does not answer, is another chip, or its readings do not change.",
-        "All coils off, latched, if the program asks where down is; else only told.",
+        "Everything off, latched, if the program asks where down is; else only told.",
         "Check the sensor and its bus, then `softrig clear`.",
     ),
     Code(
@@ -342,13 +342,13 @@ CODES = (
     Code(
         codes.EXCESS_CURRENT, "F21", "mA",
         "More current flows than was ordered; it goes on with every output off.",
-        "Coil supply switched off, latched.",
+        "Supply switched off, latched.",
         "A MOSFET is stuck: replace it.",
     ),
     Code(
         codes.ALERT, "F22", "mA",
         "The current monitor has raised its alarm: the supply current was far above its limit.",
-        "All coils off by hardware, latched until clear.",
+        "Coils off by hardware, then everything; latched until clear.",
         "Look for a shorted coil: `softrig clear`, then `softrig arm` names it.",
     ),
     Code(
@@ -366,13 +366,13 @@ CODES = (
     Code(
         codes.STALL, "F25", "mA",
         "A joint's servo took its stall current for too long: it cannot turn as it is told.",
-        "Everything off, latched until clear; joints are limp.",
+        ALL_OFF,
         "Find what blocks it, or grip with less; then `softrig clear`.",
     ),
     Code(
         codes.JOINT, "F26", "counts",
         "The reading of a joint's angle is none that its potentiometer gives.",
-        "Before arming: refused, everything off. While armed: everything off, latched until clear.",
+        FOUND,
         "Check the potentiometer's wire and the converter, then `softrig clear`.",
     ),
     Code(
@@ -384,7 +384,7 @@ CODES = (
     Code(
         codes.ASTRAY, "F28", "centideg",
         "A joint stands elsewhere than it was told, for too long: its servo gives no torque, or too little.",
-        "Everything off, latched until clear; joints are limp.",
+        ALL_OFF,
         "Check the servo, its gear, its horn and its supply, then `softrig clear`.",
     ),
 )  # fmt: skip

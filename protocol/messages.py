@@ -185,7 +185,7 @@ DICTIONARY_PAGE = Message(
     Field("text", "s"),  # The page; empty beyond the end.
 )  # fmt: skip
 STOPPED = Message(
-    0x05, "stopped",  # Answers the stop pattern once every coil is off.
+    0x05, "stopped",  # Answers the stop pattern once everything is off.
     Field("state", "B"),  # State of the robot. [STATES]
     Field("code", "H"),  # Why it is stopped. [CODES]
     Field("coils", "I"),  # Bit mask of the channels that were driven when the stop arrived.
@@ -210,12 +210,12 @@ ALIVE = Message(
     Field("bytes", "H"),  # How many bytes of them.
 )  # fmt: skip
 ARM = Message(
-    0x11, "arm",  # Takes the lease and allows orders until it runs out, once the self-test of every coil has passed.
+    0x11, "arm",  # Takes the lease and allows orders until it runs out, once coils and joints have passed a self-test.
     Field("session", "I"),  # The session that asks, as in its `hello`.
-    Field("lease_ms", "H"),  # All coils off when nothing arrives for this long; 0 takes the robot's own.
+    Field("lease_ms", "H"),  # Everything off when nothing arrives for this long; 0 takes the robot's own.
     Field("without", "I"),  # Bit mask of coils known to be broken: not tested, and never driven.
 )  # fmt: skip
-DISARM = Message(0x12, "disarm")  # All coils off, lease returned.
+DISARM = Message(0x12, "disarm")  # Everything off, lease returned.
 CLEAR = Message(0x13, "clear")  # Leaves the tripped state once its cause is gone.
 FIRE = Message(
     0x14, "fire",  # Heat coils for a limited time; the order carries its own end.
@@ -249,7 +249,7 @@ CALIBRATE = Message(
     Field("session", "I"),  # The session that asks, as in its `hello`.
     Field("without", "I"),  # Bit mask of coils known to be broken: not tested, and what was kept of them stands.
 )  # fmt: skip
-SERVICE = Message(0x1D, "service")  # Restarts the robot in service mode; refused unless every coil is at rest.
+SERVICE = Message(0x1D, "service")  # Restarts the robot in service mode; refused unless everything is off.
 CLOCK_REQUEST = Message(
     0x1E, "clock_request",  # Asks for `clock`; posted.
     Field("host_us", "I"),  # The host's clock, modulo 2**32.
@@ -267,7 +267,7 @@ START = Message(
     0x22, "start",  # Verifies the uploaded program and runs it.
     Field("at_ms", "I"),  # When, by the robot's clock; 0: at once; 4294967295: at the next `sync`.
 )  # fmt: skip
-CANCEL = Message(0x23, "cancel")  # Ends the running program: all coils off, still armed.
+CANCEL = Message(0x23, "cancel")  # Ends the running program: all coils off, joints hold, still armed.
 
 MOVE = Message(
     0x24, "move",  # Turn joints to an angle on a straight line, then hold them there; the order carries its own end.
@@ -304,7 +304,7 @@ STATUS = Message(
     Field("lease_ms", "H"),  # What is left of the lease, 0: none.
     Field("step", "H"),  # Step of the program, 0: none.
     Field("coils", "I"),  # Bit mask of the channels that are driven.
-    Field("supply_mv", "H"),  # Supply voltage at the coils' rail.
+    Field("supply_mv", "H"),  # Supply voltage at the rail of coils and servos.
     Field("current_ma", "H"),  # Supply current.
     Field("board_decidegc", "h"),  # Temperature of the board.
     Field("roll_decideg", "h"),  # Lean to the right; 0 when the attitude is not known.
@@ -361,7 +361,7 @@ BEACON = Message(
     Field("state", "B"),  # State of the robot. [STATES]
     Field("code", "B"),  # Last fault, 0: none since boot. [CODES]
     Field("step", "H"),  # Step of the program, 0: none.
-    Field("supply_mv", "H"),  # Supply voltage at the coils' rail.
+    Field("supply_mv", "H"),  # Supply voltage at the rail of coils and servos.
     Field("current_ma", "H"),  # Supply current.
 )  # fmt: skip
 BEACON_COILS = Message(

@@ -885,7 +885,7 @@ static inline int softrig_unpack_dictionary_page(softrig_dictionary_page *out, s
     return 0;
 }
 
-/* 0x05 stopped: Answers the stop pattern once every coil is off. */
+/* 0x05 stopped: Answers the stop pattern once everything is off. */
 #define SOFTRIG_STOPPED_BYTES 11u
 typedef struct softrig_stopped {
     uint8_t state; /* State of the robot. SOFTRIG_STATES_... */
@@ -997,11 +997,11 @@ static inline int softrig_unpack_alive(softrig_alive *out, softrig_bytes payload
     return 0;
 }
 
-/* 0x11 arm: Takes the lease and allows orders until it runs out, once the self-test of every coil has passed. */
+/* 0x11 arm: Takes the lease and allows orders until it runs out, once coils and joints have passed a self-test. */
 #define SOFTRIG_ARM_BYTES 10u
 typedef struct softrig_arm {
     uint32_t session; /* The session that asks, as in its hello. */
-    uint16_t lease_ms; /* All coils off when nothing arrives for this long; 0 takes the robot's own. */
+    uint16_t lease_ms; /* Everything off when nothing arrives for this long; 0 takes the robot's own. */
     uint32_t without; /* Bit mask of coils known to be broken: not tested, and never driven. */
 } softrig_arm;
 
@@ -1025,7 +1025,7 @@ static inline int softrig_unpack_arm(softrig_arm *out, softrig_bytes payload)
     return 0;
 }
 
-/* 0x12 disarm: All coils off, lease returned. */
+/* 0x12 disarm: Everything off, lease returned. */
 /* It has no payload. */
 
 /* 0x13 clear: Leaves the tripped state once its cause is gone. */
@@ -1179,7 +1179,7 @@ static inline int softrig_unpack_calibrate(softrig_calibrate *out, softrig_bytes
 /* 0x18 coils_request: Asks for coils. */
 /* It has no payload. */
 
-/* 0x1D service: Restarts the robot in service mode; refused unless every coil is at rest. */
+/* 0x1D service: Restarts the robot in service mode; refused unless everything is off. */
 /* It has no payload. */
 
 /* 0x1E clock_request: Asks for clock; posted. */
@@ -1275,7 +1275,7 @@ static inline int softrig_unpack_start(softrig_start *out, softrig_bytes payload
     return 0;
 }
 
-/* 0x23 cancel: Ends the running program: all coils off, still armed. */
+/* 0x23 cancel: Ends the running program: all coils off, joints hold, still armed. */
 /* It has no payload. */
 
 /* 0x24 move: Turn joints to an angle on a straight line, then hold them there; the order carries its own end. */
@@ -1403,7 +1403,7 @@ typedef struct softrig_status {
     uint16_t lease_ms; /* What is left of the lease, 0: none. */
     uint16_t step; /* Step of the program, 0: none. */
     uint32_t coils; /* Bit mask of the channels that are driven. */
-    uint16_t supply_mv; /* Supply voltage at the coils' rail. */
+    uint16_t supply_mv; /* Supply voltage at the rail of coils and servos. */
     uint16_t current_ma; /* Supply current. */
     int16_t board_decidegc; /* Temperature of the board. */
     int16_t roll_decideg; /* Lean to the right; 0 when the attitude is not known. */
@@ -1638,7 +1638,7 @@ typedef struct softrig_beacon {
     uint8_t state; /* State of the robot. SOFTRIG_STATES_... */
     uint8_t code; /* Last fault, 0: none since boot. SOFTRIG_CODES_... */
     uint16_t step; /* Step of the program, 0: none. */
-    uint16_t supply_mv; /* Supply voltage at the coils' rail. */
+    uint16_t supply_mv; /* Supply voltage at the rail of coils and servos. */
     uint16_t current_ma; /* Supply current. */
 } softrig_beacon;
 
