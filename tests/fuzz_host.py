@@ -8,10 +8,10 @@ from host.pairing import Opening
 from host.session import Session
 from protocol import frames, messages
 from protocol.link import LinkFull
-from tests.fuzz_robot import PROFILE_BYTES
+from tests.firmware_bench import PROFILE
 from tests.fuzz_script import SESSION, Script
 
-DICTIONARY = dictionary_of(PROFILE_BYTES)
+DICTIONARY = dictionary_of(PROFILE.read_bytes())
 DICTIONARY_CRC = crc32(DICTIONARY)
 PAGE = 200
 ORDERS = [

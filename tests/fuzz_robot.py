@@ -1,42 +1,55 @@
-"""Fuzz target: the robot's core on the table top. Whatever arrives, no coil is on that nobody ordered."""
+"""Fuzz targets: cores on the table top. Whatever arrives, nothing is driven that nobody ordered, and no joint jumps."""
 
+import io
+import json
 from binascii import crc32
 
 from firmware.core import Core
+from firmware.dictionary import Dictionary
 from firmware.profile import Profile
 from protocol import frames, messages, program
 from protocol.link import QUEUE_MAX, WINDOW
-from tests.firmware_bench import PROFILE, Table
+from tests.firmware_bench import FINGERS, PROFILE, ROOT, Table
 from tests.fuzz_script import SESSION, Script
+from tests.odd_robots import MIXED
 
 ROOM = 512
 KEY = bytes(range(32))
-HEATING = (messages.FIRE.number, messages.START.number)
-PROFILE_BYTES = PROFILE.read_bytes()
-ROBOT = Profile(PROFILE_BYTES)
-DICTIONARY = Table().dictionary()
+DRIVING = (messages.FIRE.number, messages.MOVE.number, messages.START.number)
+FRAME_MS = 10  # of the camera: from one to the next the loop turns the joints at once
 
 
-class Board(Table):
-    """A table whose dictionary need not be read from disk for every input."""
+class Kind:
+    """A robot by its profile; its dictionary need not be read from disk for every input."""
 
-    def dictionary(self):
-        return DICTIONARY
+    def __init__(self, text: bytes) -> None:
+        self.profile = Profile(text)
+        self._text = text
+        self.dictionary = Dictionary(self._open, "")
+
+    def _open(self, path: str, mode: str):
+        return io.BytesIO(self._text) if path == "/robot.json" else (ROOT / path.lstrip("/")).open(mode)
+
+
+ROUND, FINGER, BOTH = Kind(PROFILE.read_bytes()), Kind(FINGERS.read_bytes()), Kind(json.dumps(MIXED).encode())
 
 
 class Robot:
     """A core; what it hears is kept, so that each step can be judged."""
 
-    def __init__(self, keyed: bool) -> None:
-        self.board = Board()
+    def __init__(self, kind: Kind, keyed: bool) -> None:
+        self.board = Table()
+        self.board.dictionary = lambda: kind.dictionary
+        self.profile = kind.profile
         if keyed:
             self.board.flash.files["/key"] = KEY + crc32(KEY).to_bytes(4, "little")
-        self.board.supply.mv = ROBOT.supply.nominal_mv
-        self.core = Core(self.board, ROBOT, boot=1)
+        self.board.supply.mv = self.profile.supply.nominal_mv
+        self.core = Core(self.board, self.profile, boot=1)
         self.keyed = keyed
         self.ordered = False
         self.now_ms = 0
-        self.reached = set()  # states, and whether a coil was on in them
+        self.reached = set()  # states, and whether anything was driven in them
+        self.widths_ns = self._widths()
         self.step(b"")
 
     def step(self, data: bytes) -> None:
@@ -44,7 +57,8 @@ class Robot:
         stops = frames.STOP in data
         out = self.core.step(self.now_ms, data, ROOM)
         self.now_ms += 5
-        on = any(self.board.chip.duty_permille)
+        self._turned()
+        on = any(self.board.chip.duty_permille) or any(self.widths_ns)
         core = self.core
         self.reached.add((core.state, on))
         assert len(out) <= ROOM
@@ -60,17 +74,36 @@ class Robot:
         assert len(core.link._ahead) < WINDOW
         assert max(len(core.link.flight.waiting), len(core.link._posts)) <= QUEUE_MAX
 
+    def _turned(self) -> None:
+        """Assert that no joint was told an angle outside its range, or one too far from the last."""
+        told_ns, self.widths_ns = self.widths_ns, self._widths()
+        for before_ns, after_ns in zip(told_ns, self.widths_ns, strict=True):
+            if after_ns is None:
+                continue
+            servo = self.profile.servo
+            assert servo.width_ns(servo.least_centideg) <= after_ns <= servo.width_ns(servo.most_centideg)
+            way_ns = servo.width_ns(servo.slew_centideg_per_s * FRAME_MS // 1000) - servo.width_ns(-2)
+            assert before_ns is None or abs(after_ns - before_ns) <= way_ns
+
+    def _widths(self) -> list:
+        return [servo.width_ns for servo in self.board.servos.values()]
+
 
 def core(data: bytes) -> None:
-    """Whatever a script does to a robot, what `Robot.step` asserts holds after each step."""
-    played(data)
+    """Whatever a script does to a robot of coils, what `Robot.step` asserts holds after each step."""
+    played(data, ROUND)
 
 
-def played(data: bytes) -> Robot:
+def hand(data: bytes) -> None:
+    """And to a robot of joints, or one that has coils besides."""
+    played(data, BOTH if data[:1] and data[0] & 2 else FINGER)
+
+
+def played(data: bytes, kind: Kind) -> Robot:
     """Greet, order, upload, break parts, let time pass; the session's numbers are kept right if the script likes."""
     script = Script(data)
     mode = script.byte()
-    robot = Robot(mode & 1 != 0)
+    robot = Robot(kind, mode & 1 != 0)
     script.crc = robot.core.link.decoder.dictionary_crc
     seq = 0
     while script and robot.now_ms < 4000:
@@ -88,9 +121,9 @@ def played(data: bytes) -> Robot:
         elif what == 3:
             line = frames.STOP
         elif what == 4:
-            line, seq = _program(script, seq, act >> 4)
+            line, seq = _program(script, robot.profile.crc, seq, act >> 4)
         elif what == 5:
-            _break(robot.board, act >> 4)
+            _break(robot.board, robot.profile, act >> 4)
         elif what == 6:
             line = script.sealed(messages.ARM.number, _arm(script), seq, 0, frames.RELIABLE)
             seq += 1
@@ -98,7 +131,7 @@ def played(data: bytes) -> Robot:
             kind = script.byte()
             line = script.sealed(kind, script.some(), seq & 255, script.byte(), frames.RELIABLE)
             seq += 1
-            robot.ordered = robot.ordered or kind in HEATING
+            robot.ordered = robot.ordered or kind in DRIVING
         robot.ordered = robot.ordered or what in (0, 2, 4)
         robot.step(line)
         for _ in range(min(act >> 4, 15) if what >= 12 else 0):
@@ -116,11 +149,11 @@ def _alive(script: Script, core: Core) -> bytes:
     return script.sealed(messages.ALIVE.number, payload, core.link._next_posted & 255, core.link._next_send & 255)
 
 
-def _program(script: Script, seq: int, flags: int) -> tuple[bytes, int]:
+def _program(script: Script, robot_crc: int, seq: int, flags: int) -> tuple[bytes, int]:
     """Return a program as the script's bytes say, uploaded and started."""
     code = script.some()
     rows = (
-        (messages.PROGRAM.number, program.header(code, ROBOT.crc, flags & 1)),
+        (messages.PROGRAM.number, program.header(code, robot_crc, flags & 1)),
         (messages.CODE.number, messages.CODE.pack(offset=0, code=code)),
         (messages.START.number, messages.START.pack(at_ms=messages.AT_SYNC if flags & 2 else 0)),
     )
@@ -131,12 +164,16 @@ def _program(script: Script, seq: int, flags: int) -> tuple[bytes, int]:
     return line, seq
 
 
-def _break(board: Table, what: int) -> None:
-    """Open the e-stop, lose a chip, weld a switch, or make all well again."""
+def _break(board: Table, profile: Profile, what: int) -> None:
+    """Open the e-stop, lose a chip or the object, strain a joint, or make all well again."""
     board.closed = what != 1
     board.supply.absent = what == 3
     board.alerting = what == 4
     board.decidegc = 1200 if what == 5 else 250
     board.flash.broken = what == 6
     board.coil_mohm[0] = 0 if what == 7 else 10_850
-    board.supply.mv = 900 if what == 8 else ROBOT.supply.nominal_mv
+    board.supply.mv = 900 if what == 8 else profile.supply.nominal_mv
+    board.watcher.absent, board.watcher.frozen, board.watcher.seen = what == 9, what == 10, what != 11
+    board.watcher.centideg = 6000 if what == 12 else 0
+    board.converter.stuck_counts = {3: 4095} if what == 13 else {}
+    board.converter.ma[0] = 2500 if what == 14 else 100

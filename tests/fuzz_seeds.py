@@ -74,6 +74,31 @@ def core() -> Iterator[tuple[str, bytes]]:
     yield "keyed", b"\x01" + HELLO + WAIT + ARM + fire + WAIT
 
 
+def hand() -> Iterator[tuple[str, bytes]]:
+    for mode, joints, name in ((0, 0, ""), (2, 2, "mixed ")):  # the second robot's joints stand behind two coils
+        right, left = 1 << joints, 2 << joints
+        armed = bytes((mode,)) + HELLO + b"\xfc" * 2 + ARM + WAIT * 5
+        fields = {"over_ms": 200, "hold_ms": 3000}
+        grip = b"".join(
+            told(messages.MOVE, messages.MOVE.pack(joints=joint, target_centideg=target, **fields), 0x07)
+            for joint, target in ((right, 250), (left, -250))
+        )
+        turn = told(messages.ORIENT, messages.ORIENT.pack(target_centideg=500, time_ms=1000, hold_ms=1000), 0x07)
+        there = program.Condition(program.ANGLE, program.ALL, program.BELOW, 300, right | left)
+        strained = program.Condition(program.LOAD, program.ANY, program.ABOVE, 2000, right)
+        turned = program.Condition(program.ORIENTATION, program.ANY, program.ABOVE, 400, 0)
+        closed = program.move(right, 250, 200) + program.move(left, -250, 200) + program.delay(200)
+        code = program.guard(strained) + closed + program.wait(there, 300, 0) + program.orient(500, 900)
+        code += program.wait(turned, 300, program.CONTINUE) + program.halt()
+        yield f"{name}gripped", armed + grip + WAIT * 4
+        yield f"{name}turned", armed + grip + WAIT * 4 + turn + WAIT * 2 + b"\xc5" + WAIT * 3 + b"\x05" + WAIT
+        yield f"{name}blind", armed + grip + WAIT * 4 + turn + WAIT + b"\x95" + WAIT * 4 + b"\x05" + turn + WAIT
+        yield f"{name}strained", armed + grip + b"\xe5" + WAIT * 7 + told(messages.CLEAR, b"", 0x07) + ARM + WAIT
+        yield f"{name}played", armed + b"\x04" + sized(code) + WAIT * 14
+        yield f"{name}cancelled", armed + b"\x14" + sized(code) + WAIT * 7 + told(messages.CANCEL, b"", 0x07) + WAIT * 2
+        yield f"{name}stopped", armed + grip + STOP + WAIT + told(messages.CLEAR, b"", 0x07) + WAIT
+
+
 def session() -> Iterator[tuple[str, bytes]]:
     for message in ANSWERS:
         act = 0x03 if message.number < 0x50 else 0x04
@@ -115,7 +140,7 @@ def _halves(text: str) -> tuple[bytes, bytes]:
     return text[: len(text) // 2].encode(), text[len(text) // 2 :].encode()
 
 
-SEEDS = (decoder, link, core, session, canbus, slcan, socketcand)
+SEEDS = (decoder, link, core, hand, session, canbus, slcan, socketcand)
 
 
 def files() -> Iterator[tuple[Path, bytes]]:

@@ -2,8 +2,10 @@
 
 import pytest
 
+from firmware.core import Core
+from firmware.orient import Orient
 from protocol import messages
-from tests.fuzz_robot import played
+from tests.fuzz_robot import BOTH, FINGER, ROUND, played
 from tests.fuzz_seeds import CORPUS, files
 from tests.fuzz_targets import TARGETS
 
@@ -26,15 +28,32 @@ def test_the_seeds_of_the_corpus_are_those_that_their_file_makes():
 
 
 @pytest.mark.parametrize(
-    ("seed", "reached"),
+    ("kind", "seed", "reached"),
     [
-        ("fired", (messages.ARMED, True)),
-        ("played", (messages.RUNNING, True)),
-        ("at-sync", (messages.RUNNING, True)),
-        ("stopped", (messages.TRIPPED, False)),
-        ("keyed", (messages.IDLE, False)),
+        (ROUND, "core/fired", (messages.ARMED, True)),
+        (ROUND, "core/played", (messages.RUNNING, True)),
+        (ROUND, "core/at-sync", (messages.RUNNING, True)),
+        (ROUND, "core/stopped", (messages.TRIPPED, False)),
+        (ROUND, "core/keyed", (messages.IDLE, False)),
+        (FINGER, "hand/gripped", (messages.ARMED, True)),
+        (FINGER, "hand/strained", (messages.TRIPPED, False)),
+        (FINGER, "hand/played", (messages.RUNNING, True)),
+        (BOTH, "hand/mixed-gripped", (messages.ARMED, True)),
+        (BOTH, "hand/mixed-played", (messages.RUNNING, True)),
     ],
 )
-def test_the_seeds_reach_what_they_are_meant_for(seed, reached):
+def test_the_seeds_reach_what_they_are_meant_for(kind, seed, reached):
     """A seed that is refused at the door teaches the fuzzer nothing."""
-    assert reached in played((CORPUS / "core" / seed).read_bytes()).reached
+    assert reached in played((CORPUS / seed).read_bytes(), kind).reached
+
+
+@pytest.mark.parametrize(("seed", "event"), [("turned", ""), ("blind", "lost")])
+def test_the_loop_runs_in_the_seeds_that_are_meant_for_it(seed, event, monkeypatch):
+    turns, seen = [], []
+    monkeypatch.setattr(Orient, "_integrate", lambda self, now_ms: turns.append(now_ms))
+    monkeypatch.setattr(Core, "_lose_object", lambda self: seen.append("lost"))
+
+    played((CORPUS / "hand" / seed).read_bytes(), FINGER)
+
+    assert len(turns) > 3
+    assert seen == ([event] if event else [])
