@@ -91,7 +91,7 @@ def test_experiments_are_those_of_runs(address, tilt, used):
     tilted, swung = ((values[left] - values[right]) / 2 for values in (object_deg(record), swing_deg(record)))
     friction = [max(record.scenes[i]["observed"]["friction_used"].values()) for i in (left, right)]
 
-    assert swung == pytest.approx(9.8, abs=0.06)
+    assert swung == pytest.approx(10, abs=0.06)
     assert -tilted == pytest.approx(float(tilt), abs=0.06)
     assert np.mean(friction) == pytest.approx(float(used), abs=0.006)
 
