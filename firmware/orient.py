@@ -48,7 +48,8 @@ class Orient:
                 raise Refused(codes.NOT_HELD, joints.first + joint)
         swing_centideg = (commanded[0] + commanded[1]) // 2
         if abs(swing_centideg) > self._swing_max:
-            raise Refused(codes.RANGE_LIMIT, joints.first, swing_centideg, self._swing_max)
+            limit = self._swing_max if swing_centideg > 0 else -self._swing_max
+            raise Refused(codes.RANGE_LIMIT, joints.first, swing_centideg, limit)
         self._target_centideg = target_centideg
         self._grip_centideg = (commanded[0] - commanded[1]) // 2
         self._fine = swing_centideg * FINE

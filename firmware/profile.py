@@ -8,6 +8,7 @@ from binascii import crc32
 
 GAIN_MAX_PERMILLE_PER_S = 30_000  # beyond it the loop's integers would not stay small
 SPAN_MAX_CENTIDEG = 36_000
+SPREAD_MAX = (1 << 30) // 10  # centidegrees of a span times microseconds between its pulses: their product stays small
 SLEW_MAX_CENTIDEG_PER_S = 1_000_000
 HOLD_MAX_MS = 1 << 24
 UA_PER_COUNT_MAX = 16_000  # 4095 counts are told as 65535 mA at most
@@ -134,7 +135,9 @@ class ServoLimits:
             ("most_centideg", self.most_centideg <= half_centideg),
             ("slew_centideg_per_s", 0 < self.slew_centideg_per_s <= SLEW_MAX_CENTIDEG_PER_S),
             ("hold_max_ms", 0 < self.hold_max_ms <= HOLD_MAX_MS),
-            ("high_us", 0 < data["low_us"] < data["high_us"] < 1_000_000 // self.pulse_hz),
+            ("pulse_hz", self.pulse_hz > 0),
+            ("high_us", 0 < data["low_us"] < data["high_us"] and data["high_us"] * self.pulse_hz < 1_000_000),
+            ("high_us", self._span_centideg * self._width_us < SPREAD_MAX),
             ("ua_per_count", 0 < self.ua_per_count <= UA_PER_COUNT_MAX),
             ("high_counts", 0 <= self.low_counts <= self.high_counts - WAY_MIN_COUNTS <= COUNTS_MAX - WAY_MIN_COUNTS),
         ):

@@ -86,6 +86,20 @@ def test_no_number_of_a_movement_is_beyond_the_small_integers_of_a_board():
         assert joints.commanded_centideg[0] == pytest.approx(-9000 + 18000 * passed_ms / 65535, abs=1)
 
 
+def test_no_number_of_the_loop_is_beyond_the_small_integers_of_a_board(gripping):
+    loop = gripping.core.limbs.orient
+    loop._gain, loop._camera._stale_ms = Small(30_000), 1000
+    gripping.say(messages.ORIENT, target_centideg=32767, time_ms=65535, hold_ms=60000)
+    gripping.board.watcher.frozen = True
+    gripping.run(300)
+
+    gripping.board.watcher.frozen, gripping.board.watcher.centideg = False, -32767
+    gripping.run(3000)
+
+    assert loop.active
+    assert sum(commanded(gripping)) == 2 * -2000
+
+
 def test_the_loop_jumps_by_no_more_than_a_frames_way_after_frames_were_lost(gripping):
     gripping.say(messages.ORIENT, target_centideg=0, time_ms=5000, hold_ms=5000)
     gripping.run(50)
@@ -222,12 +236,36 @@ def test_servos_beside_coils_are_no_current_that_nothing_explains(mixed):
     assert not mixed.events("tripped")
 
 
+def test_a_condition_on_a_joint_beside_coils_is_of_that_joint(mixed):
+    above = program.Condition(program.ANGLE, program.ALL, program.ABOVE, 400, 0b1000)
+    moves = program.move(0b0100, -500, 100) + program.move(0b1000, 500, 100)
+
+    run_program(mixed, moves + program.wait(above, 1000, program.ABORT) + program.halt())
+    mixed.run(300)
+
+    assert mixed.events("finished")
+
+
+def test_a_program_that_the_camera_aborted_leaves_the_next_one_alone(armed):
+    above = program.Condition(program.ORIENTATION, program.ANY, program.ABOVE, 3000, 0)
+    run_program(armed, program.wait(above, 4000, program.ABORT) + program.halt())
+    armed.board.watcher.absent = True
+    armed.run(200)
+
+    run_program(armed, program.move(R, 500, 100) + program.halt())
+    armed.run(200)
+
+    assert [event.code for event in armed.events("aborted")] == [codes.CAMERA]
+    assert armed.events("finished")
+
+
 @pytest.mark.parametrize(
     "servo",
     [
         {"least_centideg": 100, "most_centideg": -100}, {"least_centideg": -9001}, {"most_centideg": 9001},
         {"slew_centideg_per_s": 0}, {"span_centideg": 150}, {"ua_per_count": 20_000}, {"high_counts": 410},
-        {"low_counts": 2000, "high_counts": 2100}, {"high_us": 400}, {"low_us": -1}, {"high_us": 5001},
+        {"low_counts": 2000, "high_counts": 2100}, {"high_us": 400}, {"low_us": -1}, {"high_us": 5001}, {"pulse_hz": 0},
+        {"pulse_hz": 40, "high_us": 24_000},
     ],
     ids=str,
 )  # fmt: skip

@@ -74,6 +74,7 @@ def test_a_limp_joint_sets_out_from_where_it_is_no_faster_than_it_may(armed):
         ({"target_centideg": -3001}, codes.RANGE_LIMIT, -3001, -3000),
         ({"over_ms": 20}, codes.SLEW_LIMIT, 40000, 36000),
         ({"over_ms": 0}, codes.SLEW_LIMIT, 800000, 36000),
+        ({"target_centideg": 37, "over_ms": 1}, codes.SLEW_LIMIT, 37000, 36000),
         ({"hold_ms": 60001}, codes.HOLD_LIMIT, 60001, 60000),
         ({"joints": 0b100}, codes.UNKNOWN_CHANNEL, 0b100, 0b11),
         ({"joints": 0}, codes.UNKNOWN_CHANNEL, 0, 0b11),
@@ -170,6 +171,28 @@ def test_a_potentiometer_that_reads_no_position_refuses_the_arming_and_trips_an_
 
     assert (refused.code, refused.channel, refused.value) == (codes.JOINT, 1, counts)
     assert [(trip.code, trip.channel) for trip in hand.events("tripped")] == [(codes.JOINT, 1)]
+
+
+def test_a_moment_of_a_potentiometer_that_reads_no_position_is_none(armed):
+    for _ in range(5):
+        armed.board.converter.stuck_counts[3] = 0
+        armed.run(80)
+        armed.board.converter.stuck_counts.clear()
+        armed.run(20)
+
+    assert not armed.events("tripped")
+
+
+def test_the_current_of_a_limp_joint_is_no_stall(armed):
+    armed.board.converter.ma[0] = 2500
+    armed.run(500)
+    armed.move(R, 500, hold_ms=60000)
+    armed.run(200)
+    early = armed.events("tripped")
+
+    armed.run(150)
+
+    assert (early, [trip.code for trip in armed.events("tripped")]) == ([], [codes.STALL])
 
 
 def test_the_angle_and_the_current_are_read_as_they_are(hand):

@@ -3,6 +3,7 @@
 import pytest
 
 from protocol import codes, messages, program
+from protocol.variables import UNKNOWN_ANGLE as LIMP
 from tests.firmware_bench import FINGERS, Rig, refusal, run_program
 
 R, L = 0b01, 0b10
@@ -71,23 +72,26 @@ def test_the_swing_stops_at_its_clamp_and_the_grip_stays(gripping):
 
 
 def test_it_comes_back_from_its_clamp_without_delay(gripping):
-    orient(gripping, -3000, time_ms=60000)
+    orient(gripping, -1000, time_ms=60000)
     turn(gripping, 5000, gain=-0.1)
-    orient(gripping, 0)
-    turn(gripping, 200)
+    clamped = swing(gripping)
+    gripping.board.watcher.centideg = -2000
+    gripping.run(200)
 
-    assert swing(gripping) < 1990
+    assert clamped == 2000
+    assert swing(gripping) == pytest.approx(2000 - 5 * 1000 * 0.2, abs=100)  # a frame or two late
 
 
-def test_the_joints_stay_in_their_range(gripping):
+@pytest.mark.parametrize(("target_centideg", "ends"), [(-3000, (3000, 0)), (3000, (0, -3000))])
+def test_the_joints_stay_in_their_range(gripping, target_centideg, ends):
     gripping.move(R, 1500, over_ms=500, hold_ms=60000)
     gripping.move(L, -1500, over_ms=500, hold_ms=60000)
     gripping.run(600)
 
-    orient(gripping, -3000)
+    orient(gripping, target_centideg)
     turn(gripping, 5000, gain=-0.1)
 
-    assert commanded(gripping) == (3000, 0)
+    assert commanded(gripping) == ends
 
 
 def test_no_joint_is_turned_faster_than_it_may(gripping):
@@ -188,14 +192,34 @@ def test_an_object_is_turned_only_by_joints_that_hold_it_and_a_camera_that_sees_
     assert refusal(orient(gripping, 500)).code == codes.NO_CAMERA
 
 
-def test_a_swing_beyond_the_clamp_is_not_taken_over(gripping):
-    gripping.move(R, 2900, over_ms=500, hold_ms=60000)
-    gripping.move(L, 2400, over_ms=500, hold_ms=60000)
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_swing_beyond_the_clamp_is_not_taken_over(gripping, side):
+    gripping.move(R, side * 2900, over_ms=500, hold_ms=60000)
+    gripping.move(L, side * 2400, over_ms=500, hold_ms=60000)
     gripping.run(600)
 
     refused = refusal(orient(gripping, 0))
 
-    assert (refused.code, refused.value, refused.limit) == (codes.RANGE_LIMIT, 2650, 2000)
+    assert (refused.code, refused.value, refused.limit) == (codes.RANGE_LIMIT, side * 2650, side * 2000)
+
+
+def test_a_hold_beyond_the_limit_is_refused(gripping):
+    refused = refusal(orient(gripping, 500, hold_ms=60001))
+
+    assert (refused.code, refused.value, refused.limit) == (codes.HOLD_LIMIT, 60001, 60000)
+
+
+def test_the_loop_ends_with_the_arming(gripping):
+    orient(gripping, 500, time_ms=60000)
+    gripping.say(messages.DISARM)
+    gripping.run(50)
+    limp = commanded(gripping)
+
+    gripping.arm()
+    gripping.move(R | L, 0, over_ms=100, hold_ms=60000)
+    gripping.run(300)
+
+    assert (limp, commanded(gripping)) == ((LIMP, LIMP), (0, 0))
 
 
 def test_a_move_takes_the_joints_out_of_the_loop(gripping):
