@@ -154,6 +154,7 @@ def enter(core, state):
     if state == "running":
         core.start(script())
     if state == "turning":
+        core.profile.servo.astray_ms = 60_000  # no joint follows here
         core.limbs.move(0b01, 250, 100, 60_000, core.now_ms)
         core.limbs.move(0b10, -250, 100, 60_000, core.now_ms)
         core.limbs.turn(100, 60_000, 0, core.now_ms)
