@@ -9,6 +9,7 @@ from firmware.joints import Joints
 from firmware.profile import Profile, ServoLimits
 from protocol import codes, messages, program, variables
 from tests.firmware_bench import FINGERS, Rig, refusal, run_program
+from tests.hil_rig import HilRig
 from tests.odd_robots import MIXED, ODD, PINCH, fingers, rig_of, without
 from tests.small_integers import Small
 
@@ -286,3 +287,19 @@ def test_a_servo_of_which_numbers_would_not_fit_is_none(servo):
 def test_a_loop_needs_two_joints_and_a_camera_one(data):
     with pytest.raises(ValueError, match="joints"):
         Profile(json.dumps(data).encode())
+
+
+def test_a_robot_is_armed_again_while_its_servos_still_slacken():
+    """They hold for 100 ms after their last pulse, and the self-test takes what flows for a MOSFET that is stuck."""
+    rig = HilRig("sim:fingers-experiment")
+    rig.robot.arm()
+    for label, centideg in (("R", 250), ("L", -250)):
+        rig.robot.move([label], centideg, 500, 60000)
+    rig.run(1.0)
+
+    rig.robot.stop()
+    rig.robot.clear()
+    rig.robot.arm()
+
+    assert rig.robot.status().state == "armed"
+    assert all(joint.deg is None for joint in rig.bench.joints)
