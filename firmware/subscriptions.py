@@ -113,7 +113,7 @@ class Subscriptions:
                 raise Refused(codes.UNKNOWN_VARIABLE, 255, number, len(variables.VARIABLES) - 1)
         octets = variables.size(numbers, *self._counts)
         if not 0 < octets <= VALUES_MAX:
-            raise Refused(codes.RECORD_LIMIT, 255, octets, VALUES_MAX)
+            raise Refused(codes.RECORD_LIMIT, 255, octets, VALUES_MAX if octets else 1)
 
     def _values(self, mine: Subscription, now_ms: int, room: int) -> bytes:
         """Return the values to send now, or b""; count those that found no room since they were due."""

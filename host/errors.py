@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from protocol import causes, codes
 
-LOWER_BOUNDS = (codes.SUPPLY_LOW, codes.COIL_SHORT, codes.PERIOD_LIMIT)  # their limit is what should have been reached
 NONE = 255  # channel number of an answer that is about no channel
 
 
@@ -126,8 +125,8 @@ def _told(code: int, value: int, limit: int = 0) -> str:
     row = causes.row(code)
     if row is None:
         return f"code {code}, unknown to this version; update softrig"
-    bound = "at least" if row.number in LOWER_BOUNDS or limit < 0 else "at most"
-    beyond = f", {bound} {_plain(limit, row.unit)}" if limit else ""
+    bound = "at least" if value < limit else "at most"
+    beyond = f", {bound} {_plain(limit, row.unit)}" if limit or row.number == codes.RANGE_LIMIT else ""
     figures = f" {amount(value, row.unit)}{beyond}." if row.unit else ""
     return f"{row.name} {_cause(row, value)}{figures} {row.todo}"
 

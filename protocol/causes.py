@@ -173,9 +173,9 @@ CODES = (
     ),
     Code(
         codes.RECORD_LIMIT, "R27", "bytes",
-        "The variables do not fit into one record of telemetry.",
+        "The variables do not fit into one record of telemetry, or the robot has none of them.",
         NOTHING,
-        "Ask for fewer, or share them out to several slots.",
+        "Ask for fewer, or share them out to several slots; `softrig watch --list` tells what each is of.",
     ),
     Code(
         codes.PERIOD_LIMIT, "R28", "ms",

@@ -77,6 +77,19 @@ def test_a_label_that_there_is_not_is_named_for_what_the_robot_has(profile, what
         profile.mask(["Z"])
 
 
+@pytest.mark.parametrize(
+    ("code", "value", "limit", "told"),
+    [
+        (codes.RANGE_LIMIT, 3100, 3000, "31 deg, at most 30"),
+        (codes.RANGE_LIMIT, -100, 0, "-1 deg, at least 0"),
+        (codes.RANGE_LIMIT, 100, 500, "1 deg, at least 5"),
+        (codes.SLEW_LIMIT, 40_000, 36_000, "400 deg/s, at most 360"),
+    ],
+)
+def test_a_limit_is_told_for_the_side_on_which_it_was_passed(code, value, limit, told):
+    assert f". {told}. " in str(Refused("move", code, value, limit, "R", "joint"))
+
+
 @pytest.mark.parametrize("section", ["servo", "channels"])
 def test_joints_without_their_limits_are_a_mismatch(section):
     data = json.loads(FINGERS)

@@ -169,6 +169,7 @@ def test_a_slot_that_fills_the_line_leaves_the_others_their_turn(slots):
         ({"period_ms": 4}, codes.PERIOD_LIMIT, 4, 5),
         ({"variables": bytes([0, 30])}, codes.UNKNOWN_VARIABLE, 30, 29),
         ({"variables": bytes([18]) * 8}, codes.RECORD_LIMIT, 256, 229),
+        ({"variables": bytes([26, 28])}, codes.RECORD_LIMIT, 0, 1),  # of joints: it has none
     ],
 )
 def test_what_cannot_be_sent_is_refused_with_the_limit_and_what_was_stands(rig, fields, code, value, limit):
