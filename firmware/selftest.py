@@ -3,7 +3,7 @@
 One look per control step, one coil at a time, for about 2 ms each. With the supply open no current may flow through an
 output that is on (else its switch is welded); with the supply on and every output off none either (else a MOSFET is
 stuck); then each coil's resistance must be in its band, and each joint's angle one that its potentiometer gives. The
-first that is not ends the test with everything off.
+first that is not ends the test with everything off. A robot without coils has nothing to see a welded switch by.
 """
 
 from firmware.sense import STRAY_MA
