@@ -12,6 +12,7 @@ from hil_sim.devices.ntc import Ntc
 from hil_sim.faults.file import load as load_faults
 from hil_sim.faults.file import plan
 from hil_sim.faults.happening import schedule
+from hil_sim.joints import angle_input
 from hil_sim.physics.hand.fingertip import HandError
 from hil_sim.plant import RingPlant
 from hil_sim.robotcheck import near
@@ -101,16 +102,18 @@ def _agree(robot: RobotFile, profile: bytes) -> None:
         raise RobotFileError(f"{robot.profile}: no profile of a robot ({error!r})") from None
     wiring = robot.wiring
     wired: list[tuple[str, tuple[Any, ...]]] = [(label, wiring.outputs[label]) for label in robot.labels]
-    wired += [(label, (wiring.pins[label],)) for label in robot.joints]
+    count = len(robot.joints)
+    wired += [(label, (wiring.pins[label], i, angle_input(i, count))) for i, label in enumerate(robot.joints)]
     if rows != wired:
         odd = [label for label, _ in dict.fromkeys([row for row in [*wired, *rows] if (row in wired) != (row in rows)])]
         which = " ".join(dict.fromkeys(odd)) or "their order"
-        raise RobotFileError(f"{robot.name} and its profile {robot.profile} differ in labels or outputs: {which}")
+        what = "differ in labels, outputs or inputs"
+        raise RobotFileError(f"{robot.name} and its profile {robot.profile} {what}: {which}")
 
 
 def _place(row: dict[str, Any]) -> tuple[Any, ...]:
-    """Return chip and output of a coil of the profile, or the pin of a servo."""
-    return (row["pin"],) if row["kind"] == "servo" else (row["chip"], row["output"])
+    """Return chip and output of a coil of the profile, or the pin of a servo and the inputs of current and angle."""
+    return (row["pin"], row["current"], row["angle"]) if row["kind"] == "servo" else (row["chip"], row["output"])
 
 
 def parts_of(robot: RobotFile) -> Parts:

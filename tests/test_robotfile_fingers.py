@@ -9,7 +9,7 @@ import pytest
 from hil_sim.address import AddressError, parse
 from hil_sim.assembly import assemble
 from hil_sim.physics.hand.numbers import CONTACTS, MOTIONS, TIPS
-from hil_sim.robotfile import FOLDER, RobotFileError, load
+from hil_sim.robotfile import FOLDER, PROFILES, RobotFileError, load
 from hil_sim.robottexts import CHOICES
 
 ROBOTS = ("fingers", "fingers-experiment")
@@ -131,7 +131,18 @@ def test_a_bench_that_cannot_be_is_refused_by_what_is_wrong(options, told):
 def test_a_servo_on_another_pin_than_the_profile_says_is_told(tmp_path):
     (tmp_path / "mine.toml").write_text(TEXT.replace("R = 8, L = 9", "R = 8, L = 10"), encoding="utf-8")
 
-    with pytest.raises(RobotFileError, match=r"mine and its profile .*fingers.json differ in labels or outputs: L"):
+    with pytest.raises(RobotFileError, match=r"mine and its profile .*fingers.json differ in labels, .*: L"):
+        assemble(parse(f"sim:{tmp_path / 'mine.toml'}"))
+
+
+def test_a_joint_that_is_read_at_another_input_than_it_is_wired_to_is_told(tmp_path):
+    profile = (PROFILES / "fingers.json").read_text(encoding="utf-8")
+    crossed = profile.replace('"current": 0, "angle": 2', '"current": 2, "angle": 0')
+    (tmp_path / "mine.json").write_text(crossed, encoding="utf-8")
+    text = TEXT.replace('profile = "fingers"', 'profile = "mine.json"')
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+
+    with pytest.raises(RobotFileError, match=r"differ in labels, outputs or inputs: R$"):
         assemble(parse(f"sim:{tmp_path / 'mine.toml'}"))
 
 

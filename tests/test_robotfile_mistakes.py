@@ -85,7 +85,7 @@ def test_a_file_that_is_no_text_or_without_end_is_told_so(data, told, tmp_path):
 
 @pytest.mark.parametrize(
     ("right", "wrong", "told"),
-    [('"label": "H"', '"label": "Z"', "differ in labels or outputs: H Z"), ("{", "{,", "no profile of a robot")],
+    [('"label": "H"', '"label": "Z"', "differ in labels, outputs or inputs: H Z"), ("{", "{,", "no profile of a robot")],
 )
 def test_a_profile_that_does_not_fit_its_body_is_refused(right, wrong, told, tmp_path):
     (tmp_path / "mine.toml").write_text(CIRCULAR.replace('profile = "circular"', 'profile = "mine.json"'))
