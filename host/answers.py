@@ -15,7 +15,7 @@ from host.coils import CoilState, coils_of
 from host.errors import Refused
 from host.kept import FaultPage, Settings, faults_of, settings_of
 from host.profile import Parts
-from host.records import Status, coil_name, status_of
+from host.records import Status, channel_name, status_of
 from protocol import messages
 
 Answer = Status | FaultPage | Settings | dict[str, CoilState]
@@ -75,7 +75,7 @@ class Answers:
 
     def _refused(self, row: Any, parts: Parts) -> Taken:
         asked = self._asked.get(row.request)
-        name, label = asked.name if asked else "an order", coil_name(row.channel, parts.channels)
+        name, label = asked.name if asked else "an order", channel_name(row.channel, parts.channels)
         return self._taken(row.request, Refused(name, row.code, row.value, row.limit, label, parts.kind(label)))
 
     def _taken(self, seq: int, answer: Refused | Answer | None) -> Taken:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from dataclasses import dataclass
 
-from host.records import coil_name, state_name
+from host.records import channel_name, state_name
 from protocol import messages
 
 
@@ -62,7 +62,7 @@ def settings_of(payload: bytes, labels: tuple[str, ...]) -> Settings:
 
 def _fault(fields: tuple[int, ...], labels: tuple[str, ...]) -> Fault:
     start, now_ms, code, channel, value, state, cause = fields
-    coil = coil_name(channel, labels)
+    coil = channel_name(channel, labels)
     return Fault(start, now_ms, code, coil, value, state_name(state), _named(messages.CAUSES, cause))
 
 

@@ -143,13 +143,13 @@ def event_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Event:
     """Return the record of that payload; ValueError when it is none."""
     row = messages.EVENT.unpack(payload)
     name = messages.EVENTS[row.event] if row.event < len(messages.EVENTS) else f"event {row.event}"
-    return Event(host_ms, row.now_ms, name, row.code, row.step, coil_name(row.channel, labels), row.value)
+    return Event(host_ms, row.now_ms, name, row.code, row.step, channel_name(row.channel, labels), row.value)
 
 
 def stopped_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Stopped:
     """Return the record of that payload; ValueError when it is none."""
     row = messages.STOPPED.unpack(payload)
-    return Stopped(host_ms, row.now_ms, state_name(row.state), row.code, coil_names(row.coils, labels))
+    return Stopped(host_ms, row.now_ms, state_name(row.state), row.code, channel_names(row.coils, labels))
 
 
 def status_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Status:
@@ -162,7 +162,7 @@ def status_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Status:
         uptime_ms=row.uptime_ms,
         lease_ms=row.lease_ms,
         step=row.step,
-        coils=coil_names(row.coils, labels),
+        coils=channel_names(row.coils, labels),
         supply_mv=row.supply_mv,
         current_ma=row.current_ma,
         board_degc=row.board_decidegc / 10,
@@ -178,7 +178,7 @@ def _attitude(roll_decideg: int, pitch_decideg: int, down: int, labels: tuple[st
     """Return how the robot lies, or nothing where it does not know."""
     if down == program.NO_COIL:
         return {}
-    return {"roll_deg": roll_decideg / 10, "pitch_deg": pitch_decideg / 10, "down": coil_name(down, labels)}
+    return {"roll_deg": roll_decideg / 10, "pitch_deg": pitch_decideg / 10, "down": channel_name(down, labels)}
 
 
 def _angle_deg(centideg: int = variables.UNKNOWN_ANGLE) -> float | None:
@@ -191,12 +191,12 @@ def state_name(state: int) -> str:
     return messages.STATES[state] if state < len(messages.STATES) else f"state {state}"
 
 
-def coil_name(channel: int, labels: tuple[str, ...]) -> str | None:
+def channel_name(channel: int, labels: tuple[str, ...]) -> str | None:
     """Return the label of a channel number, or None when it names no channel."""
     return labels[channel] if channel < len(labels) else None
 
 
-def coil_names(mask: int, labels: tuple[str, ...]) -> tuple[str, ...]:
+def channel_names(mask: int, labels: tuple[str, ...]) -> tuple[str, ...]:
     """Return the labels of a mask; before the labels are known, the channel numbers."""
     names = labels or tuple(str(channel) for channel in range(32))
     return tuple(name for i, name in enumerate(names) if mask >> i & 1)
