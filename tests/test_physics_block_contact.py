@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil_sim.physics.block import contact
-from hil_sim.physics.block.contact import ContactUnsettled, slope, touch
+from hil_sim.physics.block.contact import ContactUnsettled, slope, touch, touch_with
 
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -126,3 +126,23 @@ def test_the_slope_is_what_a_deeper_shape_adds_while_the_same_points_touch():
     assert (found.active == deeper.active).all()
     assert slope(C, found.active) == pytest.approx((deeper.force - found.force).sum() / 1e-7, rel=1e-5)
     assert slope(C, np.zeros(6, bool)) == 0.0
+
+
+@given(SEEDS, st.integers(1, 12), st.floats(0.0, 3.0), st.floats(-3.0, 3.0))
+def test_a_shape_finds_the_depth_of_a_force(seed, n, depth, start):
+    C, g = solid(seed, n)
+    known = touch(C, g - depth)
+    force = float(known.force.sum())
+
+    found, there = touch_with(C, g, force, -10.0, 10.0, start)
+
+    assert there.force == pytest.approx(known.force, rel=1e-6, abs=1e-9)
+    assert found == pytest.approx(depth if force > 0.0 else g.min(), abs=1e-9)
+
+
+def test_a_shape_that_cannot_get_to_its_force_goes_as_far_as_it_may():
+    C, g = np.eye(1), np.array([1.0])
+
+    assert touch_with(C, g, 5.0, 0.0, 2.0, 0.0)[0] == 2.0
+    assert touch_with(C, g, 0.1, 1.5, 2.0, 2.0)[0] == 1.5
+    assert touch_with(C, g, 0.0, -1.0, 0.5, 0.0)[0] == 0.5

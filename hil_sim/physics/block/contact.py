@@ -13,6 +13,10 @@ before: between steps of a press one or two times. That may come back to a set i
 the energy is brought down one point after the other, so that no set can come twice and the end is certain.
 Should rounding prevent even that, `ContactUnsettled` says so: nothing that violates (K1) is ever returned.
 
+The shape may be driven by its force instead of its depth. The sum of the forces grows with the depth, along a line as
+long as the same points touch, so Newton's method from line to line finds the depth of a force; where it would leave
+what is known to hold the answer, that is halved.
+
 Source: standard; the first correction is known as primal-dual active set or block principal pivoting, the second is
 the active-set method of non-negative least squares. Checked in tests/test_physics_block_contact.py.
 """
@@ -28,6 +32,8 @@ Mask = NDArray[np.bool_]
 
 ROUNDING = 1e-11
 BLOCKS = 30
+SEARCH = 100
+SHARE = 1e-12
 TINY = 1e-300
 
 
@@ -78,6 +84,54 @@ def touch(C: Array, g: Array, active: Mask | None = None) -> Touch:
             return found._replace(force=np.maximum(found.force, 0.0))
         now = now ^ wrong
     return _descend(C, g, len(tried))
+
+
+def touch_with(
+    C: Array, g: Array, force: float, least: float, most: float, depth: float, active: Mask | None = None
+) -> tuple[float, Touch]:
+    r"""Return the depth at which a shape presses with a force, and its contact there.
+
+    Parameters
+    ----------
+    C : array (n, n)
+        Compliance of the points [m/N]
+    g : array (n,)
+        Gaps without contact of the shape at depth 0 [m]
+    force : float
+        Sum of the forces; at 0 the shape just touches [N]
+    least : float
+        Where the shape can get up to; the depth is this if it presses harder even there [m]
+    most : float
+        Where the shape can get down to; the depth is this if it presses less even there [m]
+    depth : float
+        Where to begin [m]
+    active : array (n,) of bool
+        Points that are likely to touch [1]
+
+    Returns
+    -------
+    tuple of float and Touch
+        Depth [m] and contact there
+
+    Raises
+    ------
+    ContactUnsettled
+        As `touch` does, or the depth is not found to rounding
+    """
+    first = int(np.argmin(g))
+    low, high, depth = least, most, min(max(depth if force > 0.0 else float(g[first]), least), most)
+    for _ in range(SEARCH):
+        found = touch(C, g - depth, active)
+        active, excess = found.active, float(found.force.sum()) - force
+        low, high = (low, depth) if excess > 0.0 else (depth, high)
+        stiffness = slope(C, active)
+        target = depth - excess / stiffness if stiffness > 0.0 else float(g[first] + force * C[first, first])
+        target = min(max(target, least), most)
+        if target == depth or abs(excess) <= SHARE * force:
+            return depth, found
+        halve = not low <= target <= high
+        depth = 0.5 * (low + high) if halve else target
+    raise ContactUnsettled(f"no depth from {least:g} to {most:g} m is found for {force:g} N")
 
 
 def slope(C: Array, active: Mask) -> float:
