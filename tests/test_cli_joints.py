@@ -112,6 +112,28 @@ def test_orient_tells_the_same_as_json(softrig, line):
     assert told["joints"]["L"] == {"reached_deg": -13.0, "peak_ma": 1200}
 
 
+def test_orient_closes_where_the_object_was_let_go(softrig, peer, line):
+    told = softrig("orient", "-5deg", "--grip", "8deg", "--swing", "-6.4deg")
+
+    assert told.status == 0
+    assert [order[1:3] for order in orders(peer, "move")] == [(0b01, 160), (0b10, -1440)]
+
+
+def test_orient_tells_when_the_swing_is_at_its_limit(softrig, line):
+    told = softrig("orient", "25deg", "--grip", "8deg")
+
+    assert "the swing is at its limit of 20 deg: it turns the object no further\n" in told.out
+
+
+@pytest.mark.parametrize("grip", ["0deg", "-8deg"])
+def test_orient_refuses_a_grip_that_holds_nothing(softrig, peer, line, grip):
+    told = softrig("orient", "5deg", "--grip", grip)
+
+    assert told.status == 2
+    assert f"--grip {grip}: both joints close inward, so write an angle above 0" in told.err
+    assert peer.orders == []
+
+
 def test_an_object_that_is_lost_from_sight_is_no_success(softrig, peer, line):
     line.at[3500] = lambda: peer.tell(messages.LOST, codes.CAMERA, 255, 105, line.now_ms)
 
