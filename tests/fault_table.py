@@ -257,7 +257,7 @@ ROWS = (
     Row(
         "servo-dead:R", HOLDING, "F28", ASTRAY_MS, "fault", "clear, mend",
         "The grip pushes the finger away; 1.5 degrees off for 1.5 s are more than any lag. One in place is not seen.",
-        robot=FINGERS,
+        "F28", robot=FINGERS,
     ),
     Row(
         "pot-open:R", HOLDING, "F26", POT_MS, "fault", "clear, mend",
