@@ -1,1 +1,1 @@
-"""Stress and strain of a rheological block of two dimensions, and a rigid shape that is pressed on it."""
+"""A block of rheological material, deformed and stressed under what presses it: 2-D finite elements."""
