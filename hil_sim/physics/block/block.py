@@ -100,7 +100,8 @@ class Stiffness:
         rows, columns, values = self.coupling
         right = forces - np.bincount(rows, values * held[columns], forces.size)
         right[self.dofs] = held
-        return self._solved(right[None])[0]
+        du: Array = self._solved(right[None])[0]
+        return du
 
     def influence(self, dofs: Indices) -> Array:
         r"""Return the displacements of everything for a unit force at each of some degrees of freedom.
@@ -127,7 +128,8 @@ class Stiffness:
         block = self.block
         x = np.ascontiguousarray(right[:, block.at])
         skyline.solve(self.entries, block.start, block.first, x)
-        return x[:, block.place]
+        solved: Array = x[:, block.place]
+        return solved
 
     def _filled(self, blocks: Array) -> Array:
         """Return the rows of the skyline, with 1 alone in those that are held."""

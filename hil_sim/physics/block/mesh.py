@@ -185,7 +185,8 @@ def _check_edges(corners: Indices) -> Indices:
     rising = np.bincount(inverse, weights=directed[:, 0] == low)
     for wrong in np.flatnonzero((count == 2) & (rising != 1))[:1]:
         raise BlockError(f"edge {_edge(directed, first[wrong])} has two triangles on the same side")
-    return directed[first[count == 1]]
+    edges: Indices = directed[first[count == 1]]
+    return edges
 
 
 def _edge(directed: Indices, which: int) -> list[int]:

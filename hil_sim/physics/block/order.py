@@ -7,6 +7,8 @@ triangles twice as long as high it leaves a quarter of these entries, but scatte
 kind takes longer to solve with (`skyline`).
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from hil_sim.physics.block.mesh import Indices, Mesh
@@ -52,7 +54,7 @@ def cuthill_mckee(i: Indices, j: Indices) -> Indices:
     """Return the nodes in reverse Cuthill-McKee order, piece by piece, each from a node at its far end."""
     start = np.searchsorted(i, np.arange(i[-1] + 2))
     degree = np.diff(start)
-    near = [sorted(j[a:b].tolist(), key=degree.__getitem__) for a, b in zip(start[:-1], start[1:], strict=True)]
+    near = [sorted(j[a:b].tolist(), key=degree.__getitem__) for a, b in pairwise(start)]
     seen, order = np.zeros(degree.size, bool), []
     for seed in np.argsort(degree, kind="stable").tolist():
         if not seen[seed]:
