@@ -21,6 +21,8 @@ OPS = [
     (program.off(0x80), "09 80000000"),
     (program.aim(2, 1, [11, 12, 0]), "0a 02 01 0b0c00ffffffffff"),
     (program.aimed(2, 1000, 550, 950), "0b 02 e803 2602 b603 0000"),
+    (program.move(0b10, -250, 1000), "0c 02000000 06ff e803"),
+    (program.orient(-30, 5000), "0d e2ff 8813"),
     (program.halt(), "00"),
 ]
 
@@ -70,6 +72,39 @@ def test_the_verification_finds_out_whether_a_program_asks_where_down_is(code, n
         pass
 
     assert check.needs_attitude == needed
+
+
+@pytest.mark.parametrize(
+    ("code", "camera", "loop"),
+    [
+        (program.move(1 << 8, 0, 1), False, False),
+        (program.guard(Condition(program.ANGLE, 0, program.ABOVE, 0, 1 << 8)), False, False),
+        (program.guard(Condition(program.ORIENTATION, 0, program.ABOVE, 0, 0)), True, False),
+        (program.orient(0, 1), True, True),
+    ],
+)
+def test_the_verification_finds_out_whether_a_program_needs_a_camera_and_the_loop(code, camera, loop):
+    check = verify.Check(code + program.halt(), 8, 100, joints=2)
+
+    while not check.go_on(1):
+        pass
+
+    assert (check.needs_camera, check.needs_loop) == (camera, loop)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        program.move(0, 0, 1), program.move(1, 0, 1), program.move(1 << 10, 0, 1), program.move(0x101, 0, 1),
+        program.fire(1 << 8, 1, 1), program.off(1 << 9),
+        program.guard(Condition(program.ANGLE, 0, program.ABOVE, 0, 1)),
+        program.guard(Condition(program.LOAD, program.CHOSEN, program.ABOVE, 0, 1 << 8)),
+        program.guard(Condition(program.HEAT, 0, program.ABOVE, 0, 1 << 8)),
+    ],
+)  # fmt: skip
+def test_an_order_or_condition_for_channels_of_the_other_kind_is_refused(code):
+    with pytest.raises(program.BadProgram):
+        verify.check_code(code + program.halt(), coils=8, bytes_max=100, joints=2)
 
 
 BAD = {
