@@ -233,6 +233,7 @@ def test_a_robot_of_coils_is_told_that_it_has_no_joints(body, code, column):
         ("guard R.temperature > 6 C", "R is a joint: it has no `temperature` to compare", "it has: angle current"),
         ("guard A.angle > 6 deg", "A is a coil: it has no `angle` to compare", "it has: temperature heat"),
         ("move Q to 8 deg over 2 s", "the robot round has no coil or joint `Q`", "it has: A B R L all front odd"),
+        ("guard R.voltage < 5 mA", "there is no `voltage` to compare", "write `supply.voltage`"),
         ("guard R L.angle > 6 deg", "`R` is neither any nor all", "write `any R L.angle` or `all R L.angle`"),
         ("move R to 8 deg", "move has no time", "add `over 2 s`"),
         ("moev R to 8 deg over 2 s", "`moev` is no statement", "did you mean `move`?"),
@@ -242,6 +243,10 @@ def test_a_robot_of_coils_is_told_that_it_has_no_joints(body, code, column):
 )
 def test_each_mistake_says_what_to_do(body, message, help):
     assert said(body, "mixed") == (message, help)
+
+
+def test_a_quantity_without_its_owner_is_told_whose_it_is():
+    assert said("guard angle > 6 deg") == ("there is no `angle` to compare", "write `any.angle`")
 
 
 def test_the_nearest_known_quantity_is_offered():

@@ -83,8 +83,15 @@ def _lying(node: tree.Angle, scope: Scope) -> Mapping[str, Source]:
 
 
 def _unmeasured(word: Name, known: Iterable[str], scope: Scope) -> None:
-    help = did_you_mean(word.text, known) or f"it has: {' '.join(known)}"
+    help = _owned(word.text, scope) or did_you_mean(word.text, known) or f"it has: {' '.join(known)}"
     scope.problems.add(word.place, "E144", f"there is no `{word.text}` to compare", help)
+
+
+def _owned(quantity: str, scope: Scope) -> str:
+    """Return whose quantity this is, where it is that of something else than what was asked."""
+    channels = {**(COIL if scope.profile.coil_labels else {}), **(JOINT if scope.profile.joint_labels else {})}
+    owners = {"any": channels, **PARTS}
+    return next((f"write `{owner}.{quantity}`" for owner, measured in owners.items() if quantity in measured), "")
 
 
 def _subject(node: tree.Condition, scope: Scope) -> tuple[Mapping[str, Source], tuple[int, int] | None]:
