@@ -27,13 +27,13 @@ time.sleep_ms(1000)
 
 
 class FakeHand(FakePlant):
-    """Two joints that are where they are told to be, and take 1 A and 2 A while they are driven."""
+    """Two joints that are where they are told to be, and take 1 A and 2 A while they are driven, 5 mA while limp."""
 
     def __init__(self):
         super().__init__("")
         self.joints = ["R", "L"]
         self.joint_deg = np.zeros(2)
-        self.joint_current_a = np.zeros(2)
+        self.joint_current_a = np.full(2, 0.005)
         self.object_deg = None
         self.told = []
 
@@ -44,7 +44,7 @@ class FakeHand(FakePlant):
         super().advance(duration_us, coil_power_w)
         for index, degree in enumerate(self.told[-1] if self.told else ()):
             self.joint_deg[index] = self.joint_deg[index] if degree is None else degree
-            self.joint_current_a[index] = 0.0 if degree is None else 1.0 + index
+            self.joint_current_a[index] = 0.005 if degree is None else 1.0 + index
 
 
 @pytest.fixture
@@ -84,7 +84,7 @@ def test_the_emergency_stop_lets_servos_go_whatever_the_firmware_does(bench):
     bench.run(0.01)
 
     assert bench.plant.told[-1] == [None, None]
-    assert bench.supply.current_a == 0.0
+    assert (bench.supply.current_a, bench.joint("L").peak_a) == (0.0, 2.0)
 
 
 def test_servos_load_the_rail_and_the_monitor_sees_it(bench):

@@ -24,6 +24,14 @@ def test_the_width_of_the_pulse_is_the_angle_within_the_range(servo, width_us, a
     assert servo.commanded_deg(width_us) == pytest.approx(angle_deg)
 
 
+def test_a_pulse_that_does_not_come_any_more_is_not_followed(servo):
+    servo.pulsed(0, 2000, FRAME_US)
+    servo.pulsed(1000, 1500, FRAME_US)
+
+    assert servo.commanded_deg(2400) is None
+    assert servo.commanded_deg(2500) == 0.0
+
+
 def test_a_servo_without_pulses_is_limp(servo):
     assert servo.commanded_deg(1_000_000) is None
 

@@ -8,7 +8,8 @@ import json
 import pytest
 
 from host.gait.checker import check
-from tests.gait_scripts import compiled, hand_robot, mixed_robot
+from host.profile import read_profile
+from tests.gait_scripts import compiled, hand, hand_robot, mixed_robot
 from tests.gait_scripts import report as round_report
 
 HOME = "move both to 0 deg over 1 s\n"
@@ -61,6 +62,7 @@ def test_a_joint_begins_at_the_farther_end_of_its_range_when_nothing_is_known():
 
 def test_a_joint_goes_on_from_where_its_last_order_left_it():
     assert speeds("move R to 8 deg over 1 s\nmove R to 28 deg over 500 ms") == 40
+    assert speeds(HOME + "move R to 10 deg over 300 ms") == 33.34  # never rounded in the script's favour
 
 
 def test_a_joint_that_is_sent_elsewhere_on_its_way_begins_there():
@@ -89,6 +91,25 @@ def test_an_orient_keeps_joints_within_their_range():
 
     assert (joint(made).least_centideg, joint(made).most_centideg) == (-500, 3000)
     assert (joint(made, "L").least_centideg, joint(made, "L").most_centideg) == (-3000, 500)
+
+
+def test_an_orient_keeps_joints_within_a_range_that_is_not_the_same_on_both_sides():
+    made = report("move R to 4 deg over 1 s\nmove L to -4 deg over 1 s\norient 5 deg for 1 s", least_centideg=-1000)
+
+    assert (joint(made).least_centideg, joint(made).most_centideg) == (-1000, 2400)
+    assert (joint(made, "L").least_centideg, joint(made, "L").most_centideg) == (-1000, 1600)
+
+
+def test_an_orient_leaves_a_third_joint_alone():
+    data = hand()
+    data["channels"] = [*data["channels"], {"label": "M", "kind": "servo", "pin": 10, "current": 4, "angle": 5}]
+    profile = read_profile(json.dumps(data).encode())
+    body = "move both to 0 deg over 1 s\nmove M to 0 deg over 1 s\norient 5 deg for 1 s\nmove M to 5 deg over 1 s"
+
+    made = round_report(body, profile=profile)
+
+    assert made.sound
+    assert (joint(made, "M").orders, joint(made, "M").most_centideg) == (2, 500)
 
 
 def test_after_an_orient_a_joint_is_anywhere_within_its_swing():
@@ -120,11 +141,13 @@ def test_a_wait_counts_in_full_for_the_time_held():
 
 
 def test_a_loop_of_many_turns_is_worked_out_as_one_of_few():
-    body = "repeat {}:\n    move R to 8 deg over 1 s\n    wait 2 s\n    move R to -8 deg over 500 ms"
+    body = "repeat {}:\n    move R to 8 deg over 1 s\n    wait 2 s\n    move R to -8 deg over 500 ms overlap 400 ms\n"
+    after = "move R to 30 deg over 400 ms"  # from 4.8 deg on
 
-    few, many = joint(report(body.format(3))), joint(report(body.format(9999)))
+    few, many = (joint(report(body.format(turns) + after)) for turns in (3, 9999))
 
-    assert many.orders == 2 * 9999
+    assert many.orders == 2 * 9999 + 1
+    assert many.fastest_centideg_per_s == 6300
     assert (many.held_ms, many.fastest_centideg_per_s) == (few.held_ms, few.fastest_centideg_per_s)
 
 
@@ -150,6 +173,7 @@ def test_a_joint_that_a_long_loop_forgets_is_told_for_how_long():
         ("orient 5 deg for 1 s", [("E320", 1, 1)]),
         ("move L to 8 deg over 1 s\norient 5 deg for 1 s", [("E320", 2, 1)]),
         ("move both to 20.01 deg over 1 s\norient 5 deg for 1 s", [("E321", 2, 1)]),
+        ("move both to -20.01 deg over 1 s\norient 5 deg for 1 s", [("E321", 2, 1)]),
         (HOME + "orient 5 deg for 1 s\nmove R to 21 deg over 1 s\norient 5 deg for 1 s", [("E321", 4, 1)]),
     ],
 )

@@ -119,8 +119,8 @@ class Turning:
             message = f"the joints may be swung by {swing / 100:g} deg when orient begins, at most {most / 100:g} deg"
             self._problems.add(op.node.place, "E321", message)
         low, high = (right[0] - left[1]) // 2 - most, (right[1] - left[0] + 1) // 2 + most
-        low, high = max(low, servo.least_centideg), min(high, servo.most_centideg)
-        return (low, high), (max(-high, servo.least_centideg), min(-low, servo.most_centideg))
+        bottom, top = servo.least_centideg, servo.most_centideg
+        return (max(low, bottom), min(high, top)), (max(-high, bottom), min(-low, top))
 
     def _place(self, trial: JointTrial) -> tuple[int, int]:
         return trial.place(self._clock.now_ms, self._clock.most_ms)
