@@ -101,3 +101,11 @@ def test_every_make_target_is_listed_by_bare_make():
     phony = re.search(r"^\.PHONY: (.*)$", text, re.MULTILINE)[1].split()
 
     assert all(f'@echo "make {target} ' in text for target in phony if target != "help")
+
+
+def test_the_program_in_the_readme_runs(capsys):
+    (program,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+
+    exec(program, {})
+
+    assert "state='armed'" in capsys.readouterr().out
