@@ -22,12 +22,13 @@ from typing import Protocol
 
 import numpy as np
 
+from hil_sim.physics.block.material import BlockError
 from hil_sim.physics.compiled import Array
 
 EDGE = 1e-9
 
 
-class IndenterError(ValueError):
+class IndenterError(BlockError):
     """An indenter that cannot be, or that does not meet the block."""
 
 
