@@ -209,6 +209,7 @@ def test_info_tells_of_joints_what_they_may(softrig, line):
     assert "  coils       no coils\n  joints      R L\n" in told.out
     assert "  one move    -30 to 30 deg, at most 360 deg/s, then held for 60 s\n" in told.out
     assert "  stall       trips at 2400 mA for 300 ms\n" in told.out
+    assert "  astray      trips 1.5 deg beside its order for 1500 ms\n" in told.out
     assert "  orient      turns what the joints hold: gain 5 /s, swing at most 20 deg\n" in told.out
     assert "heat" not in told.out
 
