@@ -295,7 +295,7 @@ CODES = (
         codes.STRAY_CURRENT, "F13", "mA",
         "Current flows although everything is off.",
         "Before arming: refused. Else latched. The supply is switched off.",
-        "A MOSFET is stuck: replace it.",
+        "A MOSFET is stuck, or a limp servo takes current: replace it.",
     ),
     Code(
         codes.ON_TOO_LONG, "F14", "ms",
