@@ -42,7 +42,6 @@ class JointRecord:
     deg: float | None = None
     history: list[tuple[int, float | None]] = field(default_factory=list)  # time_us, command from then on
     driven_at_us: int | None = None  # last time it was driven after it had been limp
-    limp_at_us: int | None = None  # last time it was let go
     peak_a: float = 0.0
     _driven_us: int = 0
 
@@ -54,7 +53,6 @@ class JointRecord:
             self.driven_at_us = now_us
         elif deg is None:
             self._driven_us = self.driven_us(now_us)
-            self.limp_at_us = now_us
         self.deg = deg
         self.history.append((now_us, deg))
 

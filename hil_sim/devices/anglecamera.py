@@ -23,7 +23,6 @@ from hil_sim.clock import Clock
 
 IDENTITY = 0x5A
 SEEN = 1
-SIZE = 5
 STEP_DEG = 0.01
 
 
