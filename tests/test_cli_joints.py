@@ -245,6 +245,12 @@ def test_watch_tells_of_joints_by_label_and_leaves_coils_out(softrig, line):
     assert "duty_permille" not in told[-1]
 
 
+def test_watch_leaves_out_what_the_session_before_had_asked_for(softrig, line):
+    told = softrig("watch", "joint_centideg", "--for", "300ms")  # this robot goes on with the usual ones
+
+    assert (told.out, told.err) == ("", "0 records, 0 missed\n")
+
+
 def test_the_list_of_variables_says_what_each_is_told_of(softrig):
     told = softrig("watch", "--list").out
 

@@ -68,18 +68,24 @@ def command(
         else:
             note("this session may only watch: the usual variables, each 50 ms at most")
             face.overhear(every)
-        count = _watched(face, FOR_EVER_MS if lasting is None else lasting, as_json or not sys.stdout.isatty())
+        time_ms = FOR_EVER_MS if lasting is None else lasting
+        count = _watched(face, time_ms, as_json or not sys.stdout.isatty(), ours and bool(names))
         missed = sum(face.missed().values())
         if ours:
             face.subscribe(0)
     note(f"{count} records, {missed} missed")
 
 
-def _watched(face: Robot, time_ms: int, as_lines: bool) -> int:
-    """Show what comes for that long, or until Ctrl-C, and return how many records of telemetry did."""
+def _watched(face: Robot, time_ms: int, as_lines: bool, named: bool) -> int:
+    """Show what comes for that long, or until Ctrl-C, and return how many records of telemetry did.
+
+    Where variables are `named`, the usual ones are left out: what the session before had asked for may still arrive.
+    """
     count, parts = 0, face.profile.parts
     with suppress(KeyboardInterrupt), _lines(parts) if as_lines else _table(parts) as show:
         for record in face.listen(time_ms):
+            if named and isinstance(record, Telemetry):
+                continue
             count += isinstance(record, (Telemetry, Sample))
             show(record)
     return count
