@@ -4,6 +4,8 @@ import json
 
 import pytest
 
+from host.cli.motion import stretch_ms
+from host.profile import read_profile
 from protocol import codes, messages
 from tests.fake_robot import FakeLine, FakeRobot, plug_in
 from tests.joint_samples import FINGERS, HAND
@@ -48,6 +50,17 @@ def test_move_arms_moves_watches_to_the_end_of_the_hold_and_disarms(softrig, pee
         "R reached 8.00 deg, told 8 deg; 1.20 A at most",
         "L reached 8.00 deg, told 8 deg; 1.20 A at most",
     ]
+
+
+def test_a_move_ends_when_its_joints_are_limp(softrig, peer, line):
+    softrig("move", "R", "L", "--to", "8deg", "--over", "0.5s", "--hold", "300ms")
+
+    at_ms = {name: now_ms for now_ms, name, _ in peer.orders}
+    assert 800 <= at_ms["disarm"] - at_ms["move"] <= 900
+
+
+def test_a_limp_joint_may_take_as_long_as_its_whole_range():
+    assert stretch_ms(read_profile(FINGERS).servo) == 167  # 60 degrees at 360 a second
 
 
 def test_move_tells_the_same_as_json(softrig, line):

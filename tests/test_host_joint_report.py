@@ -45,7 +45,7 @@ class Watcher:
     """Sees the object in the grip when it is asked first; then nobody holds it any more."""
 
     def __init__(self):
-        self.views = [SEEN]
+        self.views = [{**SEEN, "torque_peak_nm": {"R": 2.4, "L": 2.4}}]
 
     def observe(self):
         free = {**SEEN, "object_deg": 0.0, "gripped": False, "torque_peak_nm": {"R": 2.5, "L": 2.5}}

@@ -12,7 +12,7 @@ from host.errors import BadRequest, Interrupted, Mismatch, Refused
 from host.log import LogWriter
 from host.logbook import read_log
 from host.profile import Parts, read_profile
-from host.records import Sample, Telemetry, ended
+from host.records import Sample, Telemetry, ended, row_of
 from host.robot import Robot
 from host.run import run
 from host.selections import Selection, Selections
@@ -150,6 +150,13 @@ def test_a_log_gives_joints_back_and_exports_them_by_label(tmp_path):
     assert not [name for name in row if name.startswith(("duty", "temperature"))]
 
 
+def test_a_robot_without_a_camera_has_no_object_in_its_rows():
+    told = Telemetry(0, 0, "idle", 0, 6000, 0, 25.0, (), (), joint_deg=(1.0,), commanded_deg=(None,), joint_ma=(5,))
+
+    assert "object_deg" not in row_of(told, Parts(("R",), (), ("R",)))
+    assert row_of(told, Parts(("R",), (), ("R",), cameras=1))["object_deg"] is None
+
+
 def test_joints_are_moved_by_label_and_group(robot, peer):
     robot.move(["all"], -800, over_ms=1000, hold_ms=2000)
 
@@ -171,13 +178,15 @@ def test_an_angle_that_no_message_carries_is_refused_as_the_robot_would(robot, c
     assert f"{centideg / 100:g} deg, at {'most 30' if limit > 0 else 'least -30'}." in str(caught.value)
 
 
-def test_times_that_no_message_carries_are_refused(robot):
+def test_numbers_that_no_message_carries_are_refused(robot):
     with pytest.raises(Refused, match=r"R05 .* 70000 ms, at most 60000"):
         robot.move(["R"], 0, 1000, 70_000)
     with pytest.raises(BadRequest, match="over 70000 ms: at most 65535 ms"):
         robot.move(["R"], 0, 70_000, 1000)
     with pytest.raises(BadRequest, match="for 70000 ms: at most 65535 ms"):
         robot.orient(0, 70_000, 1000)
+    with pytest.raises(BadRequest, match="orient to -400 deg: at most 327"):
+        robot.orient(-40_000, 1000, 1000)
 
 
 def test_a_refusal_about_a_joint_says_joint(robot, peer):

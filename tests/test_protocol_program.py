@@ -118,6 +118,7 @@ BAD = {
     "no turns": (program.repeat(0) + program.next_() + program.halt(), "no turns"),
     "no coil": (program.fire(0, 1, 1) + program.halt(), "channels 0x0"),
     "unknown coil": (program.fire(1 << 8, 1, 1) + program.halt(), "channels 0x100"),
+    "an object without joints": (program.orient(500, 1000) + program.halt(), "has no joints"),
     "duty above all": (program.fire(1, 1001, 1) + program.halt(), "duty 1001"),
     "nine guards": (program.guard(CONDITION) * 9 + program.halt(), "at most 8 guards"),
     "unknown source": (program.guard(Condition(12, 0, 0, 0, 1)) + program.halt(), "does not know"),
