@@ -117,5 +117,5 @@ def test_light_and_heavy_joints_stop_at_the_same_place_of_a_stiff_object(J):
 
 
 def test_a_joint_that_is_too_light_is_refused_with_its_step():
-    with pytest.raises(HandError, match=r"J = 1e-07 kg m\^2 is too light: the joint would take steps of"):
+    with pytest.raises(HandError, match=r"J = 1e-07 kg m\^2 is too light: it would take steps of"):
         hand_of(PAPER._replace(J=1e-7))

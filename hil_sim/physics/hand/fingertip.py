@@ -197,5 +197,6 @@ def refusal(finger: str, d: float, theta: float, limit: float) -> HandError:
         return ContactLost(f"{finger}: d = {1e3 * d:.4g} mm, must be above 0 mm: the tip does not touch the object")
     return OutOfRange(
         f"{finger}: d = {1e3 * d:.4f} mm at theta = {np.degrees(theta):.3f} deg,"
-        f" at most a (1 - |sin theta|) = {1e3 * limit:.4f} mm: the tip is pressed to the edge of its plate"
+        f" at most a (1 - |sin theta|) = {1e3 * limit:.4f} mm: the tip is pressed to the edge of its plate;"
+        " press or tilt it less"
     )

@@ -37,7 +37,7 @@ from hil_sim.physics.hand.fingertip import FINGERS, ContactLost, HandError, NoEq
 from hil_sim.physics.hand.geometry import centre, meet, sweep
 from hil_sim.physics.hand.numbers import Fingers, HandNumbers, fingers_of
 
-HELD, LOST_R, LOST_L, DEEP_R, DEEP_L, RESTLESS, SLIDES = range(7)
+HELD, LOST_R, LOST_L, DEEP_R, DEEP_L, RESTLESS, SLIDES, OVER_R, OVER_L = range(9)
 PRECISION = 1e-9  # [rad] and of the radius: the step after which Newton's next would be below rounding
 ITERATIONS_MAX = 60
 
@@ -100,7 +100,25 @@ def grasp(numbers: HandNumbers, q_r: Any, q_l: Any) -> Grasp:
 
 
 def joint_angles(q_r: Any, q_l: Any) -> tuple[Array, Array]:
-    """Return both joints' angles as flat arrays of one length [rad]; raises HandError for one that is no number."""
+    r"""Return both joints' angles as flat arrays of one length.
+
+    Parameters
+    ----------
+    q_r : array_like
+        Angles of the right joint [rad]
+    q_l : array_like
+        Angles of the left joint [rad]
+
+    Returns
+    -------
+    tuple of array (n,)
+        The same [rad]
+
+    Raises
+    ------
+    HandError
+        An angle that is no finite number
+    """
     pair = np.broadcast_arrays(np.atleast_1d(np.asarray(q_r, float)), np.atleast_1d(np.asarray(q_l, float)))
     for finger, angles in zip(FINGERS, pair, strict=True):
         if not np.isfinite(angles).all():
@@ -118,7 +136,7 @@ def failure(status: int, state: Sequence[float] | Array, f: Fingers) -> HandErro
         return ContactLost(f"friction of ratio {f.mu:g} does not carry the object: it slides out of the fingers")
     i = (status - 1) % 2
     d, theta, sigma = meet(f, 1.0 - 2.0 * i, state[5 + i], state[0], state[1], state[2])
-    if status in (LOST_R, LOST_L) and d > 0.0:
+    if status in (OVER_R, OVER_L):
         return ContactLost(
             f"finger {FINGERS[i]}: the tip is {1e3 * sigma:.3f} mm along its face,"
             f" which ends {0.5e3 * f.h:.3f} mm from its middle"
@@ -135,7 +153,24 @@ def rest_all(f: Fingers, q_r: Array, q_l: Array, found: Array, status: Array) ->
 
 @lean
 def rest(f: Fingers, q_r: float, q_l: float, found: Array) -> int:
-    """Write x, y, psi, d, theta, N, M, torque of both, U, K_psi and iterations; return HELD or what is wrong."""
+    r"""Find where the object rests without friction.
+
+    Parameters
+    ----------
+    f : Fingers
+        Numbers of the fingers [SI]
+    q_r : float
+        Angle of the right joint [rad]
+    q_l : float
+        Angle of the left joint [rad]
+    found : array (16,)
+        Filled with x, y, psi, d, theta, N, M and torque of both, U, K_psi and iterations [SI]
+
+    Returns
+    -------
+    int
+        HELD, or what is wrong [1]
+    """
     p, psi, K, count = settle(f, q_r, q_l)
     (rx, ry), (lx, ly) = centre(f, 1.0, q_r), centre(f, -1.0, q_l)
     along = 0.5 * (cos(psi) * (ry + ly) - sin(psi) * (rx + lx))
@@ -198,7 +233,26 @@ def shift(f: Fingers, q_r: float, q_l: float, psi: float) -> float:
 
 @lean
 def correction(f: Fingers, q_r: float, q_l: float, p: float, psi: float) -> tuple[float, float, float]:
-    """Return Newton's step of p [m] and psi [rad] by (G3), and K_psi here [N m/rad]."""
+    r"""Return Newton's step by (G3), and the rotational stiffness here.
+
+    Parameters
+    ----------
+    f : Fingers
+        Numbers of the fingers [SI]
+    q_r : float
+        Angle of the right joint [rad]
+    q_l : float
+        Angle of the left joint [rad]
+    p : float
+        Place of the object across its faces [m]
+    psi : float
+        Its orientation [rad]
+
+    Returns
+    -------
+    tuple of float
+        Step of p [m], step of psi [rad], K_psi [N m/rad]
+    """
     g_p = g_psi = H_pp = H_px = H_xx = 0.0
     for i in range(2):
         s, q = (1.0, q_r) if i == 0 else (-1.0, q_l)

@@ -155,6 +155,8 @@ class Hand:
     def jam(self, finger: int, jammed: bool = True) -> None:
         """Let joint 0 (R) or 1 (L) no longer turn, whatever its servo does, or let it turn again."""
         self.state[JAM_R + finger] = float(jammed)
+        if jammed:
+            self.state[RATES + Q_R + finger] = 0.0
 
 
 def hand_of(numbers: HandNumbers, q: Sequence[float] = (0.0, 0.0)) -> Hand:

@@ -15,8 +15,7 @@ states of their own, integrated by their rates (T1) of `rolling`: a plain ordina
 constraints, by the classical Runge-Kutta method of order 4. Slip is brought back to its bound after each step. Without
 damping and slip the energy is kept to the order of the method.
 
-Without friction nothing holds the object along its faces, so it is guided there (ASSUMED): its middle stays level with
-the middle of the tips, where the guide takes gravity and the inertia that acts along the faces. An object that is not
+Without friction nothing holds the object along its faces, so it is guided there, see `guide`. An object that is not
 gripped stands on its stand, see `still`; a tip that leaves it, or a grip that shears further than it presses, gives it
 back there, at rest. Checked in tests/test_physics_hand_motion.py.
 """
@@ -24,14 +23,15 @@ back there, at rest. Checked in tests/test_physics_hand_motion.py.
 from math import ceil, cos, pi, sin, sqrt
 
 from hil_sim.physics.compiled import Array, lean
-from hil_sim.physics.hand.fingertip import HandError, springs
+from hil_sim.physics.hand.fingertip import springs
 from hil_sim.physics.hand.friction import slipped
-from hil_sim.physics.hand.geometry import centre, meet, sweep
+from hil_sim.physics.hand.geometry import meet, sweep
 from hil_sim.physics.hand.grasp import HELD, RESTLESS
+from hil_sim.physics.hand.guide import enter, leave, middle
 from hil_sim.physics.hand.numbers import FRICTIONLESS, Fingers, Servo
-from hil_sim.physics.hand.press import torque
+from hil_sim.physics.hand.press import passed, torque
 from hil_sim.physics.hand.rolling import NEW, SHEARED
-from hil_sim.physics.hand.servo import STEP_MIN, drive
+from hil_sim.physics.hand.servo import bearable, drive
 from hil_sim.physics.hand.state import (
     ALONG,
     ENERGY,
@@ -41,6 +41,8 @@ from hil_sim.physics.hand.state import (
     MOMENT,
     MOTOR,
     NORMAL,
+    PAST_L,
+    PAST_R,
     PSI,
     Q_L,
     Q_R,
@@ -82,12 +84,10 @@ def longest_step(f: Fingers) -> float:
     turn = shift * (0.25 * f.w * f.w + f.a * f.a / 3.0)  # [N m/rad]
     squared = max(shift / f.m, turn / f.inertia)  # of the fastest motion [1/s^2]
     h = min(STEP, 0.5 / sqrt(squared), 1.5 / max(1e-9, max(f.tau, f.tau_t) * squared))
-    if h < STEP_MIN:
-        raise HandError(
-            f"an object of m = {f.m:g} kg and w = {1e3 * f.w:g} mm, h = {1e3 * f.h:g} mm is too light for motion"
-            f" 'dynamic': it takes steps of {1e6 * h:.2g} us, at least {1e6 * STEP_MIN:g} us; choose 'quasi-static'"
-        )
-    return h
+    what = f"an object of m = {f.m:g} kg and w = {1e3 * f.w:g} mm, h = {1e3 * f.h:g} mm"
+    return bearable(
+        h, f"{what} is too light for motion 'dynamic'", "choose 'quasi-static', or give it more mass or softer tips"
+    )
 
 
 @lean
@@ -109,19 +109,19 @@ def march(f: Fingers, servo: Servo, c_r: float, c_l: float, dt: float, h: float,
         Time [s]
     h : float
         Longest step [s]
-    state : array (17,)
+    state : array (19,)
         State of the hand, changed in place [SI]
     read : array (16,)
         What can be read of it [SI]
     work : array (44,)
-        Workspace of `rolling`
-    rows : array (5, 17)
-        Workspace
+        Workspace of `rolling` [SI]
+    rows : array (5, 19)
+        Workspace: the rates of the method, and a state on trial [SI]
 
     Returns
     -------
     int
-        HELD, or what is wrong
+        HELD, or what is wrong [1]
     """
     count = max(1, ceil(dt / h - 1e-9))
     for _ in range(count):
@@ -144,7 +144,8 @@ def march(f: Fingers, servo: Servo, c_r: float, c_l: float, dt: float, h: float,
 def grip(f: Fingers, state: Array, read: Array, work: Array, trial: Array) -> None:
     """Take the object from the stand if both tips touch it and would carry it."""
     for i in range(2):
-        if not meet(f, 1.0 - 2.0 * i, state[Q_R + i], state[X], state[Y], state[PSI])[0] > 0.0:
+        d, _, _ = meet(f, 1.0 - 2.0 * i, state[Q_R + i], state[X], state[Y], state[PSI])
+        if state[PAST_R + i] > 0.0 or not d > 0.0:
             return
     for i in range(STATE):
         trial[i] = state[i]
@@ -202,6 +203,7 @@ def bear(f: Fingers, i: int, state: Array, read: Array, rate: Array) -> float:
         x, y = mid_x + state[X] * n_x, mid_y + state[X] * n_y
         rate[X] = state[RATES + X] - n_x * v_x - n_y * v_y
     d, theta, sigma = meet(f, s, q, x, y, psi)
+    d = min(d, 0.0) if state[PAST_R + i] > 0.0 else d
     across, along = state[RATES + X], 0.0
     if not guided:
         across = n_x * state[RATES + X] + n_y * state[RATES + Y]
@@ -230,14 +232,17 @@ def bear(f: Fingers, i: int, state: Array, read: Array, rate: Array) -> float:
 @lean
 def judge(f: Fingers, state: Array, read: Array, work: Array) -> int:
     """Let what slips slip and what is lost stand; return HELD, or what is wrong."""
-    lost = False
+    held, lost, fallen = state[GRIPPED] > 0.0, False, False
     for i in range(2):
         d, theta, sigma = meet(f, 1.0 - 2.0 * i, state[Q_R + i], state[X], state[Y], state[PSI])
+        if f.contact != FRICTIONLESS or not held:
+            fallen = passed(f, i, d, sigma, state) or fallen
+        d = min(d, 0.0) if state[PAST_R + i] > 0.0 else d
         read[D + i], read[THETA + i] = d, theta
         state[SLIDE_R + i] = slipped(f, d, theta, state[SLIDE_R + i])[0] if d > 0.0 else 0.0
         if f.contact != FRICTIONLESS:
-            lost = lost or abs(state[SLIDE_R + i]) > SHEARED * d or (f.h > 0.0 and abs(sigma) > 0.5 * f.h)
-            if lost or state[GRIPPED] == 0.0:
+            lost = lost or abs(state[SLIDE_R + i]) > SHEARED * d
+            if lost or not held:
                 most = 0.5 * SHEARED * max(0.0, d)
                 state[SLIDE_R + i] = max(-most, min(most, state[SLIDE_R + i]))
         lost = lost or not d > 0.0
@@ -245,38 +250,9 @@ def judge(f: Fingers, state: Array, read: Array, work: Array) -> int:
         for i in range(RATES):
             work[NEW + i] = state[i]
         return RESTLESS
+    if held and fallen:
+        state[PAST_R] = state[PAST_L] = 1.0
     if lost:
         state[GRIPPED] = 0.0
         state[RATES + X] = state[RATES + Y] = state[RATES + PSI] = 0.0
     return within(f, state, read, work)
-
-
-@lean
-def middle(f: Fingers, state: Array) -> tuple[float, float, float, float]:
-    """Return the middle of the two tips' centres [m] and its speed [m/s]."""
-    x = y = v_x = v_y = 0.0
-    for i in range(2):
-        c_x, c_y = centre(f, 1.0 - 2.0 * i, state[Q_R + i])
-        to_x, to_y = sweep(f, 1.0 - 2.0 * i, state[Q_R + i])
-        x, y = x + 0.5 * c_x, y + 0.5 * c_y
-        v_x, v_y = v_x + 0.5 * to_x * state[RATES + Q_R + i], v_y + 0.5 * to_y * state[RATES + Q_R + i]
-    return x, y, v_x, v_y
-
-
-@lean
-def enter(f: Fingers, state: Array) -> None:
-    """Replace x and y of a guided object by its place across the faces from the tips' middle [m], so its speed."""
-    x, y, _, _ = middle(f, state)
-    n_x, n_y = cos(state[PSI]), sin(state[PSI])
-    state[X], state[Y] = n_x * (state[X] - x) + n_y * (state[Y] - y), 0.0
-    state[RATES + X], state[RATES + Y] = n_x * state[RATES + X] + n_y * state[RATES + Y], 0.0
-
-
-@lean
-def leave(f: Fingers, state: Array) -> None:
-    """Replace the place of a guided object across its faces by x and y again."""
-    x, y, v_x, v_y = middle(f, state)
-    n_x, n_y, c = cos(state[PSI]), sin(state[PSI]), state[X]
-    across, along = state[RATES + X], n_x * v_y - n_y * v_x + c * state[RATES + PSI]
-    state[X], state[Y] = x + c * n_x, y + c * n_y
-    state[RATES + X], state[RATES + Y] = across * n_x - along * n_y, across * n_y + along * n_x

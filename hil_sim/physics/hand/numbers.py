@@ -111,7 +111,23 @@ def fingers_of(numbers: HandNumbers) -> Fingers:
 
 
 def servo_of(numbers: HandNumbers) -> Servo:
-    """Return the servos for the kernels; raises HandError as `fingers_of` does."""
+    r"""Return a servo for the kernels.
+
+    Parameters
+    ----------
+    numbers : HandNumbers
+        Numbers of the hand [SI]
+
+    Returns
+    -------
+    Servo
+        The same, checked [SI]
+
+    Raises
+    ------
+    HandError
+        As `fingers_of`
+    """
     _check(numbers)
     return Servo(numbers.omega, numbers.rate, numbers.stall, numbers.J, numbers.rub)
 

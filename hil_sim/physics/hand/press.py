@@ -1,7 +1,8 @@
 r"""What two tips do to the object and to their joints where they are.
 
-A tip that does not touch does nothing. The finger exerts on its joint, by the virtual work of (F3) of `fingertip` over
-the depth, the tilt and the rolled way,
+A tip that does not touch does nothing, nor does one that has gone over an end of its face until it has withdrawn from
+it: no tip comes back on a face from its side (ASSUMED). The finger exerts on its joint, by the virtual work of (F3) of
+`fingertip` over the depth, the tilt and the rolled way,
 
 .. math::  \tau = N s \, n \cdot C' + M - T \{ s \, t \cdot C' - (a - d) \}                                       (L1)
 """
@@ -18,6 +19,7 @@ from hil_sim.physics.hand.state import (
     LOAD,
     MOMENT,
     NORMAL,
+    PAST_R,
     PSI,
     Q_R,
     SLIDE_R,
@@ -36,8 +38,8 @@ def press(f: Fingers, state: Array, read: Array) -> bool:
     ----------
     f : Fingers
         Numbers of the fingers [SI]
-    state : array (7,) or longer
-        Pose, slides and angles [SI]
+    state : array (19,)
+        State of the hand [SI]
     read : array (16,)
         What is read, in the order of `state` [SI]
 
@@ -50,6 +52,7 @@ def press(f: Fingers, state: Array, read: Array) -> bool:
     for i in range(2):
         s, q = 1.0 - 2.0 * i, state[Q_R + i]
         d, theta, _ = meet(f, s, q, state[X], state[Y], state[PSI])
+        d = min(d, 0.0) if state[PAST_R + i] > 0.0 else d
         d_t = 0.0 if f.contact == FRICTIONLESS or not d > 0.0 else state[SLIDE_R + i]
         U, N, M, T, _, _, _, _, _, _ = springs(f.b, f.E, f.k, max(d, 0.0), theta, d_t)
         if f.contact == FRICTIONLESS:
@@ -58,6 +61,35 @@ def press(f: Fingers, state: Array, read: Array) -> bool:
         read[LOAD + i] = torque(f, s, q, state[PSI], d, N, M, T)
         read[ENERGY] += U
     return bool(read[D] > 0.0 and read[D + 1] > 0.0)
+
+
+@lean
+def passed(f: Fingers, i: int, d: float, sigma: float, state: Array) -> bool:
+    r"""Return whether a tip has gone over an end of its face and not withdrawn since, and note it in the state.
+
+    Parameters
+    ----------
+    f : Fingers
+        Numbers of the fingers [SI]
+    i : int
+        0 for the right tip, 1 for the left one [1]
+    d : float
+        Displacement of the tip where its face is [m]
+    sigma : float
+        Place of the tip along the face, from its middle [m]
+    state : array (19,)
+        State of the hand [SI]
+
+    Returns
+    -------
+    bool
+        Whether it touches nothing though d may be above 0 [1]
+    """
+    if not d > 0.0:
+        state[PAST_R + i] = 0.0
+    elif f.h > 0.0 and abs(sigma) > 0.5 * f.h:
+        state[PAST_R + i] = 1.0
+    return bool(state[PAST_R + i] > 0.0)
 
 
 @lean

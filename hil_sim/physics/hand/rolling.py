@@ -29,7 +29,7 @@ from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.hand.fingertip import deepest, springs
 from hil_sim.physics.hand.friction import slipped
 from hil_sim.physics.hand.geometry import meet
-from hil_sim.physics.hand.grasp import DEEP_R, HELD, LOST_R, PRECISION, RESTLESS, SLIDES
+from hil_sim.physics.hand.grasp import DEEP_R, HELD, LOST_R, OVER_R, PRECISION, RESTLESS, SLIDES
 from hil_sim.physics.hand.numbers import Fingers
 from hil_sim.physics.hand.state import PSI, Q_L, Q_R, SLIDE_R, X, Y
 
@@ -58,7 +58,7 @@ def follow(f: Fingers, q_r: float, q_l: float, state: Array, work: Array) -> int
     state : array (7,) or longer
         Pose, slides and angles, changed in place if there is a rest all the way [SI]
     work : array (44,)
-        Workspace, of which COUNT is the number of Newton's steps
+        Workspace, of which COUNT is the number of Newton's steps [SI]
 
     Returns
     -------
@@ -118,8 +118,10 @@ def judged(f: Fingers, work: Array) -> int:
         return SLIDES
     for i in range(2):
         d, theta, sigma = meet(f, 1.0 - 2.0 * i, work[NEW + Q_R + i], work[NEW + X], work[NEW + Y], work[NEW + PSI])
-        if not d > 0.0 or (f.h > 0.0 and abs(sigma) > 0.5 * f.h):
+        if not d > 0.0:
             return LOST_R + i
+        if f.h > 0.0 and abs(sigma) > 0.5 * f.h:
+            return OVER_R + i
         if abs(work[NEW + SLIDE_R + i]) > SHEARED * d:
             return SLIDES
         if not d <= deepest(f.a, theta):
@@ -129,7 +131,20 @@ def judged(f: Fingers, work: Array) -> int:
 
 @lean
 def balance(f: Fingers, work: Array) -> float:
-    """Fill residual (T2), its Jacobian and the slides of the new state; return the residual's size [N]."""
+    r"""Fill residual (T2), its Jacobian and the slides of the new state.
+
+    Parameters
+    ----------
+    f : Fingers
+        Numbers of the fingers [SI]
+    work : array (44,)
+        Workspace, its two ends given [SI]
+
+    Returns
+    -------
+    float
+        Size of the residual, infinite where a tip does not touch [N]
+    """
     for i in range(RESIDUAL, SLIP + 1):
         work[i] = 0.0
     work[RESIDUAL + Y] = f.m * f.g
@@ -141,6 +156,31 @@ def balance(f: Fingers, work: Array) -> float:
 
 
 @lean
+def rolled(f: Fingers, d_0: float, theta_0: float, d: float, theta: float) -> float:
+    r"""Return how far a tip rolls on its face over a step, the second term of (T1).
+
+    Parameters
+    ----------
+    f : Fingers
+        Numbers of the fingers [SI]
+    d_0 : float
+        Displacement of the tip before [m]
+    theta_0 : float
+        Relative orientation before [rad]
+    d : float
+        Displacement after [m]
+    theta : float
+        Relative orientation after [rad]
+
+    Returns
+    -------
+    float
+        Way, which errs with the cube of the step [m]
+    """
+    return (f.a - 0.5 * (d_0 + d)) * (theta - theta_0)
+
+
+@lean
 def load(f: Fingers, i: int, work: Array) -> bool:
     """Add the loads of tip i and their derivatives to the workspace; return False if it does not touch."""
     s, psi = 1.0 - 2.0 * i, work[NEW + PSI]
@@ -148,7 +188,7 @@ def load(f: Fingers, i: int, work: Array) -> bool:
     d, theta, sigma = meet(f, s, work[NEW + Q_R + i], work[NEW + X], work[NEW + Y], psi)
     if not d > 0.0 or not cos(theta) > 0.0:
         return False
-    stuck = work[OLD + SLIDE_R + i] + s * (sigma - sigma_0) + (f.a - 0.5 * (d_0 + d)) * (theta - theta_0)
+    stuck = work[OLD + SLIDE_R + i] + s * (sigma - sigma_0) + rolled(f, d_0, theta_0, d, theta)
     d_t, by_d, by_theta, by_stuck = slipped(f, d, theta, stuck)
     work[NEW + SLIDE_R + i] = d_t
     work[SLIP] = max(work[SLIP], abs(stuck - d_t) / d)
@@ -193,7 +233,18 @@ def correction(work: Array) -> tuple[float, float, float]:
 
 @lean
 def stiffness(work: Array) -> float:
-    """Return the rotational stiffness of the grip, the object free to shift [N m/rad]."""
+    r"""Return the rotational stiffness of the grip, the object free to shift.
+
+    Parameters
+    ----------
+    work : array (44,)
+        Workspace in which `balance` has filled the Jacobian [SI]
+
+    Returns
+    -------
+    float
+        K_psi [N m/rad]
+    """
     a, b, c = work[JACOBIAN], work[JACOBIAN + 1], work[JACOBIAN + 2]
     d, e, g = work[JACOBIAN + 3], work[JACOBIAN + 4], work[JACOBIAN + 5]
     h, k, m = work[JACOBIAN + 6], work[JACOBIAN + 7], work[JACOBIAN + 8]

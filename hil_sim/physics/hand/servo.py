@@ -80,11 +80,34 @@ def longest_step(servo: Servo, f: Fingers) -> float:
     """
     pressing = sqrt(servo.J / (4.0 * pi * f.E * f.a * f.L * f.L))
     h = min(STEP, 0.03 / servo.omega, 0.5 * servo.J / max(servo.stall / servo.rate, servo.rub), 0.5 * pressing)
+    what = f"J = {servo.J:g} kg m^2 is too light"
+    return bearable(h, what, "give the joint more inertia or softer tips, its servo less bandwidth or stall torque")
+
+
+def bearable(h: float, what: str, instead: str) -> float:
+    r"""Return a step if it is not too short to be waited for.
+
+    Parameters
+    ----------
+    h : float
+        Step [s]
+    what : str
+        What asks for it, and what it is like
+    instead : str
+        What to do if it is too short
+
+    Returns
+    -------
+    float
+        The same [s]
+
+    Raises
+    ------
+    HandError
+        The step is below 2 us
+    """
     if h < STEP_MIN:
-        raise HandError(
-            f"J = {servo.J:g} kg m^2 is too light: the joint would take steps of {1e6 * h:.2g} us,"
-            f" at least {1e6 * STEP_MIN:g} us"
-        )
+        raise HandError(f"{what}: it would take steps of {1e6 * h:.2g} us, at least {1e6 * STEP_MIN:g} us; {instead}")
     return h
 
 

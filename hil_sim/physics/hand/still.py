@@ -1,26 +1,30 @@
 r"""A hand that moves slowly: the servos turn the joints, and the object is at rest between the tips at any moment.
 
-An object that is not gripped stays where it is, on a stand (ASSUMED), and the tips press and roll on it there. It is
-gripped as soon as both tips touch it and it finds a rest between them that carries it; where it no longer does, the
-stand has it again, where it is. Checked in tests/test_physics_hand_bench.py.
+An object that is not gripped stays where it is, on a stand (ASSUMED) that nothing moves, and the tips press and roll on
+it there, one alone as on a wall. It is gripped as soon as both tips touch it and it finds a rest between them that
+carries it; where it no longer does, the stand has it again, where it is. An object that slides out of the grip, or
+along it until an end of its faces passes a tip, is no wall for the tips: neither touches it then until it has
+withdrawn, see `press`. Checked in tests/test_physics_hand_bench.py and tests/test_physics_hand_ends.py.
 """
 
-from math import ceil, cos, sin
+from math import ceil, cos, inf, sin
 
 from hil_sim.physics.compiled import Array, lean
 from hil_sim.physics.hand.fingertip import deepest
 from hil_sim.physics.hand.friction import slipped
 from hil_sim.physics.hand.geometry import meet
-from hil_sim.physics.hand.grasp import DEEP_L, DEEP_R, HELD, correction, rest
+from hil_sim.physics.hand.grasp import DEEP_L, DEEP_R, HELD, OVER_L, OVER_R, SLIDES, correction, rest
 from hil_sim.physics.hand.numbers import FRICTIONLESS, Fingers, Servo
-from hil_sim.physics.hand.press import press
-from hil_sim.physics.hand.rolling import FOUND, NEW, OLD, SHEARED, balance, follow, stiffness
+from hil_sim.physics.hand.press import passed, press
+from hil_sim.physics.hand.rolling import FOUND, NEW, OLD, SHEARED, balance, follow, rolled, stiffness
 from hil_sim.physics.hand.servo import drive
 from hil_sim.physics.hand.state import (
     GRIPPED,
     JAM_R,
     LOAD,
     MOTOR,
+    PAST_L,
+    PAST_R,
     PSI,
     Q_L,
     Q_R,
@@ -53,17 +57,17 @@ def creep(f: Fingers, servo: Servo, c_r: float, c_l: float, dt: float, h: float,
         Time [s]
     h : float
         Longest step [s]
-    state : array (17,)
+    state : array (19,)
         State of the hand, changed in place [SI]
     read : array (16,)
         What can be read of it [SI]
     work : array (44,)
-        Workspace of `rolling`
+        Workspace of `rolling` [SI]
 
     Returns
     -------
     int
-        HELD, or what is wrong
+        HELD, or what is wrong [1]
     """
     count = max(1, ceil(dt / h - 1e-9))
     for _ in range(count):
@@ -92,6 +96,8 @@ def relax(f: Fingers, q_r: float, q_l: float, state: Array, read: Array, work: A
         status = hold(f, q_r, q_l, state, read, work)
         if status in (DEEP_R, DEEP_L):
             return status
+        if status in (OVER_R, OVER_L) or (status == SLIDES and f.mu < inf):
+            state[PAST_R] = state[PAST_L] = 1.0
         state[GRIPPED] = 1.0 if status == HELD else 0.0
     if state[GRIPPED] == 0.0 and lie(f, q_r, q_l, state):
         state[GRIPPED] = 1.0 if hold(f, q_r, q_l, state, read, work) == HELD else 0.0
@@ -101,7 +107,28 @@ def relax(f: Fingers, q_r: float, q_l: float, state: Array, read: Array, work: A
 
 @lean
 def hold(f: Fingers, q_r: float, q_l: float, state: Array, read: Array, work: Array) -> int:
-    """Turn the joints with the object between the tips, if it finds a rest; return HELD or what is wrong."""
+    r"""Turn the joints with the object between the tips, if it finds a rest.
+
+    Parameters
+    ----------
+    f : Fingers
+        Numbers of the fingers [SI]
+    q_r : float
+        Angle that the right joint goes to [rad]
+    q_l : float
+        Angle that the left joint goes to [rad]
+    state : array (19,)
+        State of the hand, changed in place if there is a rest [SI]
+    read : array (16,)
+        What can be read, of which the stiffness is filled in [SI]
+    work : array (44,)
+        Workspace of `rolling` [SI]
+
+    Returns
+    -------
+    int
+        HELD, or what is wrong [1]
+    """
     if f.contact != FRICTIONLESS:
         status = follow(f, q_r, q_l, state, work)
         read[STIFFNESS] = stiffness(work) if status == HELD else 0.0
@@ -120,7 +147,22 @@ def hold(f: Fingers, q_r: float, q_l: float, state: Array, read: Array, work: Ar
 
 @lean
 def resistance(f: Fingers, state: Array, work: Array) -> float:
-    """Return the rotational stiffness of a grip where it is, the object free to shift [N m/rad]."""
+    r"""Return the rotational stiffness of a grip where it is, the object free to shift.
+
+    Parameters
+    ----------
+    f : Fingers
+        Numbers of the fingers [SI]
+    state : array (19,)
+        State of the hand [SI]
+    work : array (44,)
+        Workspace of `rolling` [SI]
+
+    Returns
+    -------
+    float
+        K_psi [N m/rad]
+    """
     if f.contact == FRICTIONLESS:
         across = state[X] * cos(state[PSI]) + state[Y] * sin(state[PSI])
         return correction(f, state[Q_R], state[Q_L], across, state[PSI])[2]
@@ -138,9 +180,9 @@ def lie(f: Fingers, q_r: float, q_l: float, state: Array) -> bool:
         s, q = 1.0 - 2.0 * i, q_r if i == 0 else q_l
         d_0, theta_0, sigma_0 = meet(f, s, state[Q_R + i], state[X], state[Y], state[PSI])
         d, theta, sigma = meet(f, s, q, state[X], state[Y], state[PSI])
-        stuck = state[SLIDE_R + i] + s * (sigma - sigma_0) + (f.a - 0.5 * (d_0 + d)) * (theta - theta_0)
+        stuck = state[SLIDE_R + i] + s * (sigma - sigma_0) + rolled(f, d_0, theta_0, d, theta)
         state[Q_R + i], state[SLIDE_R + i] = q, 0.0
-        if d > 0.0:
+        if not passed(f, i, d, sigma, state) and d > 0.0:
             touching += 1
             if f.contact != FRICTIONLESS:
                 most = 0.5 * SHEARED * d  # it does not come from the stand sheared
@@ -150,7 +192,24 @@ def lie(f: Fingers, q_r: float, q_l: float, state: Array) -> bool:
 
 @lean
 def within(f: Fingers, state: Array, read: Array, work: Array) -> int:
-    """Return HELD, or which tip is pressed to the edge of its plate."""
+    r"""Return whether both tips are within what the model is valid for.
+
+    Parameters
+    ----------
+    f : Fingers
+        Numbers of the fingers [SI]
+    state : array (19,)
+        State of the hand [SI]
+    read : array (16,)
+        What can be read of it [SI]
+    work : array (44,)
+        Workspace of `rolling`, which takes the state if they are not [SI]
+
+    Returns
+    -------
+    int
+        HELD, or which tip is pressed to the edge of its plate [1]
+    """
     for i in range(2):
         if not read[D + i] <= deepest(f.a, read[THETA + i]):
             for j in range(7):
