@@ -121,7 +121,7 @@ class Stiffness:
         units[np.arange(missing.size), missing] = 1.0
         units[:, self.dofs] = 0.0
         self._influence.update(zip(missing.tolist(), self._solved(units), strict=True))
-        return np.array([self._influence[dof] for dof in dofs.tolist()]).reshape(dofs.size, -1)
+        return np.array([self._influence[dof] for dof in dofs.tolist()]).reshape(dofs.size, units.shape[1])
 
     def _solved(self, right: Array) -> Array:
         """Return the solutions for right-hand sides (m, 2 N) whose held entries are the displacements there."""

@@ -19,7 +19,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hil_sim.physics.block.material import BlockError
-from hil_sim.physics.block.mesh import Mesh
+from hil_sim.physics.block.mesh import Indices, Mesh
 from hil_sim.physics.compiled import Array
 
 COVERED = 1e-9  # share of a cell's area that may be missing, by rounding [1]
@@ -99,7 +99,7 @@ class Cells:
         return np.array([share @ values[triangles] for triangles, share in self.parts])
 
 
-def _part(mesh: Mesh, centre: Array, side: float) -> tuple[Array, Array]:
+def _part(mesh: Mesh, centre: Array, side: float) -> tuple[Indices, Array]:
     """Return the triangles that share area with a cell, and their shares of it."""
     corners = mesh.points[mesh.triangles] - centre  # (3, T, 2)
     half = 0.5 * side
