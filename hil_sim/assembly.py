@@ -16,7 +16,7 @@ from hil_sim.joints import angle_input
 from hil_sim.physics.hand.fingertip import HandError
 from hil_sim.plant import RingPlant
 from hil_sim.robotcheck import near
-from hil_sim.robotfile import RobotFile, RobotFileError, load
+from hil_sim.robotfile import PROFILES, RobotFile, RobotFileError, load
 from hil_sim.robotkeys import FINGERS, RING
 from hil_sim.soundness import CameApart
 from hil_sim.sphere import SpherePlant
@@ -43,7 +43,7 @@ def assemble(address: Address, clock: Clock | None = None, can_wire: CanWire | N
         if label not in robot.labels:
             what = f"such coil{near(label, robot.labels)}" if robot.labels else "coils"
             raise RobotFileError(f"open={label}: {robot.name} has no {what}")
-    profile = robot.profile.read_bytes()
+    profile = _profile_file(robot.profile)
     _agree(robot, profile)
     image = Image.installed(profile)
     execute = interpreter_of(address.world)
@@ -83,6 +83,15 @@ def interpreter_of(world: str) -> Interpreter:
         return cpython.execute
     micropython.interpreter()
     return micropython.execute
+
+
+def _profile_file(path: Path) -> bytes:
+    """Return what a profile holds; RobotFileError where there is none, with those that the firmware brings."""
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        known = ", ".join(sorted(each.stem for each in PROFILES.glob("*.json")))
+        raise RobotFileError(f"profile: {path}: {error.strerror}; known are {known}, or your FILE.json") from error
 
 
 def _key_file(path: str) -> bytes:

@@ -85,13 +85,23 @@ def test_a_file_that_is_no_text_or_without_end_is_told_so(data, told, tmp_path):
 
 @pytest.mark.parametrize(
     ("right", "wrong", "told"),
-    [('"label": "H"', '"label": "Z"', "differ in labels, outputs or inputs: H Z"), ("{", "{,", "no profile of a robot")],
+    [
+        ('"label": "H"', '"label": "Z"', "differ in labels, outputs or inputs: H Z"),
+        ("{", "{,", "no profile of a robot"),
+    ],
 )
 def test_a_profile_that_does_not_fit_its_body_is_refused(right, wrong, told, tmp_path):
     (tmp_path / "mine.toml").write_text(CIRCULAR.replace('profile = "circular"', 'profile = "mine.json"'))
     (tmp_path / "mine.json").write_text(load("circular").profile.read_text().replace(right, wrong, 1))
 
     with pytest.raises(RobotFileError, match=told):
+        assemble(parse(str(tmp_path / "mine.toml")))
+
+
+def test_a_profile_that_is_not_there_is_told_with_those_that_are(tmp_path):
+    (tmp_path / "mine.toml").write_text(CIRCULAR.replace('profile = "circular"', 'profile = "mine"'))
+
+    with pytest.raises(RobotFileError, match=r"profile: .*mine.json: No such file .*; known are circular, fingers, "):
         assemble(parse(str(tmp_path / "mine.toml")))
 
 
