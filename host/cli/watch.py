@@ -58,7 +58,7 @@ def command(
     A table at a terminal, one JSON object per line in a pipe. Ctrl-C ends the watching and stops nothing; `softrig
     stop` does.
     """
-    numbers_of(names or ["state"])
+    asked = numbers_of(names) if names else variables.USUAL
     if not every:
         raise BadRequest("--every 0: write at least 5ms, a control step")
     with connected(robot, watch_only=True) as face:
@@ -69,7 +69,7 @@ def command(
             note("this session may only watch: the usual variables, each 50 ms at most")
             face.overhear(every)
         time_ms = FOR_EVER_MS if lasting is None else lasting
-        count = _watched(face, time_ms, as_json or not sys.stdout.isatty(), ours and bool(names))
+        count = _watched(face, time_ms, as_json or not sys.stdout.isatty(), ours and asked != variables.USUAL)
         missed = sum(face.missed().values())
         if ours:
             face.subscribe(0)
