@@ -21,6 +21,7 @@ Source: standard; the first correction is known as primal-dual active set or blo
 the active-set method of non-negative least squares. Checked in tests/test_physics_block_contact.py.
 """
 
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
@@ -30,11 +31,12 @@ from hil_sim.physics.compiled import Array
 
 Mask = NDArray[np.bool_]
 
-ROUNDING = 1e-11
-BLOCKS = 30
-SEARCH = 100
-SHARE = 1e-12
-TINY = 1e-300
+NEAR = 1e-14  # of the largest gap, below which a gap is none [1]
+WEAK = 1e-11  # of the largest force, below which a pull is none [1]
+BLOCKS = 30  # corrections of all points at once before one goes after the other [1]
+SEARCH = 100  # depths that are tried for a force [1]
+SHARE = 1e-12  # of a force, to which it is met [1]
+TINY = 1e-300  # [N]
 
 
 class ContactUnsettled(ArithmeticError):
@@ -118,8 +120,9 @@ def touch_with(
     ContactUnsettled
         As `touch` does, or the depth is not found to rounding
     """
-    first = int(np.argmin(g))
-    low, high, depth = least, most, min(max(depth if force > 0.0 else float(g[first]), least), most)
+    first, near = int(np.argmin(g)), _near(g)
+    depth = min(max(depth if force > 0.0 else float(g[first]), least), most)
+    low, high = -inf, inf  # depths that press less and more
     for _ in range(SEARCH):
         found = touch(C, g - depth, active)
         active, excess = found.active, float(found.force.sum()) - force
@@ -127,10 +130,9 @@ def touch_with(
         stiffness = slope(C, active)
         target = depth - excess / stiffness if stiffness > 0.0 else float(g[first] + force * C[first, first])
         target = min(max(target, least), most)
-        if target == depth or abs(excess) <= SHARE * force:
+        if target == depth or abs(excess) <= max(SHARE * force, near * stiffness) or high - low <= near:
             return depth, found
-        halve = not low <= target <= high
-        depth = 0.5 * (low + high) if halve else target
+        depth = target if low < target < high else 0.5 * (max(low, least) + min(high, most))
     raise ContactUnsettled(f"no depth from {least:g} to {most:g} m is found for {force:g} N")
 
 
@@ -165,15 +167,14 @@ def _assume(C: Array, g: Array, active: Mask, solves: int) -> Touch:
 
 def _wrong(C: Array, g: Array, found: Touch) -> Mask:
     """Return the points that pull, or are inside the shape, by more than rounding."""
-    least_gap, least_force = _least(C, g, found.force)
-    return np.where(found.active, found.force < -least_force, found.gap < -least_gap)
+    near = _near(g)
+    weak = np.maximum(WEAK * np.abs(found.force).max(initial=0.0), near / np.diag(C))
+    return np.where(found.active, found.force < -weak, found.gap < -near)
 
 
-def _least(C: Array, g: Array, force: Array) -> tuple[float, float]:
-    """Return the gap [m] and the force [N] that rounding makes."""
-    largest = float(np.abs(force).max(initial=0.0))
-    finite = np.abs(g[np.isfinite(g)]).max(initial=0.0)
-    return ROUNDING * float(finite), ROUNDING * largest
+def _near(g: Array) -> float:
+    """Return the gap that rounding makes [m]."""
+    return NEAR * float(np.abs(g[np.isfinite(g)]).max(initial=0.0))
 
 
 def _descend(C: Array, g: Array, solves: int) -> Touch:
@@ -185,12 +186,12 @@ def _descend(C: Array, g: Array, solves: int) -> Touch:
         if pulling.any():
             share = np.min(force[pulling] / np.maximum(force[pulling] - found.force[pulling], TINY))
             force = force + share * (found.force - force)
-            stopped = pulling & (force <= ROUNDING * np.abs(found.force).max())
+            stopped = pulling & (force <= WEAK * np.abs(found.force).max())
             force[stopped], active = 0.0, active & ~stopped
             continue
         force, wrong = found.force, _wrong(C, g, found)
         if not wrong.any():
-            return found
+            return found._replace(force=np.maximum(found.force, 0.0))
         active = active.copy()
         active[int(np.argmin(np.where(wrong, found.gap, np.inf)))] = True
     raise ContactUnsettled(f"{g.size} points: no set that touches after {10 * g.size} more, {solves} at once before")
