@@ -112,16 +112,17 @@ class Imu:
         return not 300 <= self._turn < 350
 
 
+WIDTHS = [0, 0]  # of the pulses that each servo had last [ns]
+
+
 class Servo:
     """A servo that prints its pulses, and is where they say at once."""
-
-    widths = [0, 0]
 
     def __init__(self, place):
         self._place = place
 
     def pulse(self, width_ns):
-        Servo.widths[self._place] = width_ns
+        WIDTHS[self._place] = width_ns
         out("pulse", self._place, width_ns)
 
     def off(self):
@@ -134,7 +135,7 @@ class Converter:
     def counts(self, channel):
         if channel < 2:
             return 200
-        return 410 + (Servo.widths[channel - 2] - 500_000) // 1000 * 3276 // 2000
+        return 410 + (WIDTHS[channel - 2] - 500_000) // 1000 * 3276 // 2000
 
 
 class Camera:
@@ -147,7 +148,7 @@ class Camera:
 
     def read(self):
         self.turn += 1
-        self.centideg = -((Servo.widths[0] + Servo.widths[1]) // 2 - 1_500_000) * 7 // 1000
+        self.centideg = -((WIDTHS[0] + WIDTHS[1]) // 2 - 1_500_000) * 7 // 1000
         return self.turn % 2 == 0 and not 600 <= self.turn < 700
 
 
@@ -169,7 +170,7 @@ class Table:
         return Imu()
 
     def servo(self, pin, hz):
-        Servo.widths[pin - 8] = 1_500_000
+        WIDTHS[pin - 8] = 1_500_000
         return Servo(pin - 8)
 
     def adc(self):
@@ -293,24 +294,22 @@ def orders(profile):
     """Return (time_ms, message, fields) of a whole session, mistakes included."""
     crc = profile.crc
     code = turning() if profile.joints else rolling() if profile.imu_address else script()
-    return sorted(
-        driving(profile)
-        + [
-            (0, messages.HELLO, {"version": 2, "session": SESSION, "attach": 0, "nonce_a": 0, "nonce_b": 0}),
-            (20, messages.DICTIONARY, {"part": 0, "offset": 0, "count": 200}),
-            (40, messages.SUBSCRIBE, {"slot": 0, "period_ms": 50, "on_change": 0, "variables": b""}),
-            (50, messages.ARM, {"session": SESSION, "lease_ms": 0, "without": 0 if profile.joints else 0b100}),
-            (260, messages.COILS_REQUEST, {}),
-            (300, messages.PROGRAM, {"header": program.header(code, crc)}),
-            (310, messages.CODE, {"offset": 0, "code": code}),
-            (320, messages.START, {"at_ms": 0}),
-            (1900, messages.SETTINGS_REQUEST, {}),
-            (1910, messages.SET, {"setting": messages.NODE, "channel": 255, "value": 3}),
-            (1920, messages.FAULTS_REQUEST, {"skip": 0}),
-            (2000, messages.STATUS_REQUEST, {}),
-        ],
-        key=lambda order: order[0],
-    )
+    found = driving(profile)
+    found += [
+        (0, messages.HELLO, {"version": 2, "session": SESSION, "attach": 0, "nonce_a": 0, "nonce_b": 0}),
+        (20, messages.DICTIONARY, {"part": 0, "offset": 0, "count": 200}),
+        (40, messages.SUBSCRIBE, {"slot": 0, "period_ms": 50, "on_change": 0, "variables": b""}),
+        (50, messages.ARM, {"session": SESSION, "lease_ms": 0, "without": 0 if profile.joints else 0b100}),
+        (260, messages.COILS_REQUEST, {}),
+        (300, messages.PROGRAM, {"header": program.header(code, crc)}),
+        (310, messages.CODE, {"offset": 0, "code": code}),
+        (320, messages.START, {"at_ms": 0}),
+        (1900, messages.SETTINGS_REQUEST, {}),
+        (1910, messages.SET, {"setting": messages.NODE, "channel": 255, "value": 3}),
+        (1920, messages.FAULTS_REQUEST, {"skip": 0}),
+        (2000, messages.STATUS_REQUEST, {}),
+    ]
+    return sorted(found, key=lambda order: order[0])
 
 
 def session(core, profile):
