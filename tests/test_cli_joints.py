@@ -138,6 +138,16 @@ def test_orient_tells_when_the_swing_is_at_its_limit(softrig, line):
     assert "the swing is at its limit of 20 deg: it turns the object no further\n" in told.out
 
 
+@pytest.mark.parametrize(("angle", "most"), [("25deg", 2.0), ("-25deg", 20.0)])
+def test_the_limit_of_the_swing_is_that_of_its_side(softrig, monkeypatch, angle, most):
+    one_sided = FINGERS.replace(b'"least_centideg": -3000', b'"least_centideg": -1000')
+    plug_in(FakeLine(FakeRobot(one_sided)), monkeypatch)
+
+    told = json.loads(softrig("orient", angle, "--grip", "8deg", "--json").out)
+
+    assert told["swing_max_deg"] == most
+
+
 @pytest.mark.parametrize("grip", ["0deg", "-8deg"])
 def test_orient_refuses_a_grip_that_holds_nothing(softrig, peer, line, grip):
     told = softrig("orient", "5deg", "--grip", grip)

@@ -47,12 +47,13 @@ def command(angle: int, robot: str, grip: int, swing: int, lasting: int, hold: i
         face.orient(angle, lasting, hold)
         motion = watched(face, lasting + hold)
         face.disarm()
+    swing_deg = _swing_deg(motion, labels)
     fields = {
         "target_deg": angle / 100,
         "reached_deg": motion.object_deg,
         "grip_deg": grip / 100,
-        "swing_deg": _swing_deg(motion, labels),
-        "swing_max_deg": _swing_max_deg(face, grip),
+        "swing_deg": swing_deg,
+        "swing_max_deg": _swing_max_deg(face, grip, swing_deg or 0.0),
         "for_ms": lasting,
         "hold_ms": hold,
         "joints": motion.of(labels),
@@ -78,10 +79,10 @@ def _swing_deg(motion: Motion, labels: tuple[str, ...]) -> float | None:
     return round(sum(angles) / 2, 2) if len(angles) == 2 else None
 
 
-def _swing_max_deg(face: Robot, grip_centideg: int) -> float | None:
-    """Return how far both joints may swing with that grip, or None where the robot does not say."""
+def _swing_max_deg(face: Robot, grip_centideg: int, swing_deg: float) -> float | None:
+    """Return how far both joints may swing to that side with that grip, or None where the robot does not say."""
     limits, orient = face.profile.servo, face.profile.orient
-    room_centideg = min(limits.most_centideg, -limits.least_centideg) - grip_centideg
+    room_centideg = (limits.most_centideg if swing_deg > 0 else -limits.least_centideg) - grip_centideg
     return min(orient.swing_max_centideg, room_centideg) / 100 if orient else None
 
 
