@@ -277,10 +277,10 @@ CODES = (
         codes.GUARD, "F10", "",
         "A guard of the program held.",
         ALL_OFF,
-        "The report names the guard; change the script or its limits.",
+        "The report names the line that ran then; change the script or its limits.",
     ),
     Code(
-        codes.WAIT_TIMEOUT, "F11", "ms",
+        codes.WAIT_TIMEOUT, "F11", "",
         "A wait of the program ran out of time.",
         "Program ended, all coils off, joints hold, still armed.",
         "Give it more time, or write `else continue`.",
