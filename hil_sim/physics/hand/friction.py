@@ -14,7 +14,8 @@ do not depend on where the object is along its faces: of what a displacement is 
 which makes both slip alike and errs in T by as little of what one step slips, however many there are (ASSUMED:
 numerical).
 
-Source: Coulomb's law and return mapping, standard; (C1) and (C2) are derived here.
+Source: Coulomb's law and return mapping, standard; (C1) and (C2) are derived here. Checked in
+tests/test_physics_hand_tangential.py.
 """
 
 from math import inf, sqrt, tan

@@ -12,6 +12,7 @@ t = (-sin psi, cos psi) runs along them, and r = C - (x, y):
 .. math::  d = a + w / 2 - s \, n \cdot r, \quad \theta = \psi - q, \quad \sigma = t \cdot r                      (G2)
 
 Source: Hirai, figures 10 and 12, which give no coordinates. ASSUMED: these axes, both fingers equal, rigid links.
+Checked in tests/test_physics_hand_grasp.py.
 """
 
 from math import cos, sin

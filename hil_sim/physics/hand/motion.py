@@ -17,7 +17,8 @@ damping and slip the energy is kept to the order of the method.
 
 Without friction nothing holds the object along its faces, so it is guided there, see `guide`. An object that is not
 gripped stands on its stand, see `still`; a tip that leaves it, or a grip that shears further than it presses, gives it
-back there, at rest. Checked in tests/test_physics_hand_motion.py.
+back there, at rest. Source: rigid bodies, Kelvin-Voigt solids and the method are standard results; the loads and the
+choice of V are derived here. Checked in tests/test_physics_hand_motion.py.
 """
 
 from math import ceil, cos, pi, sin, sqrt

@@ -5,6 +5,9 @@ it: no tip comes back on a face from its side (ASSUMED). The finger exerts on it
 `fingertip` over the depth, the tilt and the rolled way,
 
 .. math::  \tau = N s \, n \cdot C' + M - T \{ s \, t \cdot C' - (a - d) \}                                       (L1)
+
+Derived here. Checked in tests/test_physics_hand_grasp.py, tests/test_physics_hand_tangential.py and
+tests/test_physics_hand_ends.py.
 """
 
 from math import cos, sin

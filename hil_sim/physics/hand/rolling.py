@@ -63,7 +63,7 @@ def follow(f: Fingers, q_r: float, q_l: float, state: Array, work: Array) -> int
     Returns
     -------
     int
-        HELD, or what is wrong
+        HELD, or what is wrong [1]
     """
     work[COUNT] = 0.0
     for i in range(7):

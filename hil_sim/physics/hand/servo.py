@@ -13,7 +13,7 @@ is told no angle, is driven back by any load against the rub b of its gear,
 .. math::  J \ddot q = \tau - b \dot q                                                                            (V2)
 
 The current grows with the torque of the motor. Source: standard results. ASSUMED: the loop knows its load (hobby
-servos hold within their dead band), J, b viscous, no efficiency of the gear. Checked in
+servos hold within their dead band), J, b viscous, no efficiency of the gear, fingers without weight. Checked in
 tests/test_physics_hand_servo.py.
 """
 
