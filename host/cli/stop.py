@@ -29,5 +29,6 @@ def command(robot: str, as_json: bool) -> None:
 
 
 def _said(stopped: Stopped) -> str:
-    coils = [f"coil {coil}" if coil.isalpha() else f"channel {coil}" for coil in stopped.coils]
-    return f"stopped; {', '.join(coils) or 'no channel'} on before, none now"
+    """Return what a stopped robot says; who has not asked for its labels is told the numbers of channels."""
+    channels = ", ".join(f"channel {number}" for number in stopped.coils)
+    return f"stopped; {channels or 'no channel'} on before, none now"
