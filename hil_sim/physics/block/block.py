@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hil_sim.physics.block import skyline
-from hil_sim.physics.block.elements import IN_PLANE, Z, stiffness_of
+from hil_sim.physics.block import history, skyline
+from hil_sim.physics.block.elements import stiffness_of
 from hil_sim.physics.block.law import fastest
 from hil_sim.physics.block.material import BlockError, Material, Update, checked, update_of
 from hil_sim.physics.block.mesh import Indices, Mesh
@@ -23,6 +23,7 @@ from hil_sim.physics.block.order import order_of, pairs_of
 from hil_sim.physics.compiled import Array, prepare
 
 KEPT = 6  # factors, of 7 MB at 9,216 triangles
+IN_PLANE, Z = [0, 1, 3], 2
 SINGULAR = 1e-11  # share of a diagonal entry that is left of it when the matrix is singular, by rounding [1]
 
 
@@ -73,7 +74,7 @@ class Stiffness:
         self.update = update
         self.block, self.dofs = block, dofs
         self.D = condensed(update.C, block.material.plane)
-        blocks = stiffness_of(block.mesh, self.D, block.thickness, block.pair, block.i.size)
+        blocks = stiffness_of(block.mesh, self.D, block.volume, block.pair, block.i.size)
         self.entries = self._filled(blocks)
         self._couple(blocks)
         row = skyline.factor(self.entries, block.start, block.first, SINGULAR)
@@ -160,14 +161,14 @@ class Block:
         if not 0.0 < thickness < np.inf:
             raise BlockError(f"thickness = {thickness:g} m, must be above 0 m and finite")
         self.mesh, self.material, self.thickness = mesh, checked(material), thickness
+        self.volume, self.flat = thickness * mesh.area, material.plane == "stress"  # of the triangles [m^3]
         self.fastest = fastest(material)  # [1/s]
         self.i, self.j = pairs_of(mesh)
         keys = np.repeat(mesh.triangles[:, None], 3, axis=1) * mesh.nodes + mesh.triangles
         self.pair = np.searchsorted(self.i * mesh.nodes + self.j, keys)
         self._lay_out(order_of(mesh.points, self.i, self.j))
         self._kept: OrderedDict[tuple[bytes, float, bool], Stiffness] = OrderedDict()
-        prepare(skyline.factor)
-        prepare(skyline.solve)
+        prepare(history.carry)
 
     def stiffness(self, held: Held, dt: float, unloading: bool = False) -> Stiffness:
         r"""Return the factored stiffness of a step.

@@ -1,4 +1,4 @@
-r"""Triangles of constant strain: strain of displacements, nodal forces of stress, stiffness.
+r"""The stiffness of triangles of constant strain.
 
 With the derivatives (b, c) of the shape functions of corner a and the displacements u and v along x and y,
 
@@ -14,61 +14,8 @@ import numpy as np
 from hil_sim.physics.block.mesh import Indices, Mesh
 from hil_sim.physics.compiled import Array
 
-IN_PLANE = [0, 1, 3]
-Z = 2
 
-
-def strain_of(mesh: Mesh, u: Array) -> Array:
-    r"""Return the strain in the plane, equation (B7).
-
-    Parameters
-    ----------
-    mesh : Mesh
-        Mesh [SI]
-    u : array (N, 2)
-        Displacements [m]
-
-    Returns
-    -------
-    array (3, T)
-        x, y, xy [1]
-    """
-    b, c = mesh.slope
-    x, y = u[:, 0][mesh.triangles], u[:, 1][mesh.triangles]
-    strain = np.empty((3, mesh.area.size))
-    np.einsum("at,at->t", b, x, out=strain[0])
-    np.einsum("at,at->t", c, y, out=strain[1])
-    np.einsum("at,at->t", c, x, out=strain[2])
-    strain[2] += np.einsum("at,at->t", b, y)
-    return strain
-
-
-def forces_of(mesh: Mesh, stress: Array, thickness: float) -> Array:
-    r"""Return the forces that hold the nodes against a stress, equation (B7).
-
-    Parameters
-    ----------
-    mesh : Mesh
-        Mesh [SI]
-    stress : array (3, T)
-        x, y, xy [Pa]
-    thickness : float
-        Of the block [m]
-
-    Returns
-    -------
-    array (N, 2)
-        Forces on the nodes [N]
-    """
-    b, c = mesh.slope
-    x, y, xy = stress * (thickness * mesh.area)
-    nodes, forces = mesh.triangles.ravel(), np.empty((mesh.nodes, 2))
-    forces[:, 0] = np.bincount(nodes, (b * x + c * xy).ravel(), mesh.nodes)
-    forces[:, 1] = np.bincount(nodes, (c * y + b * xy).ravel(), mesh.nodes)
-    return forces
-
-
-def stiffness_of(mesh: Mesh, D: Array, thickness: float, pair: Indices, pairs: int) -> Array:
+def stiffness_of(mesh: Mesh, D: Array, volume: Array, pair: Indices, pairs: int) -> Array:
     r"""Return the blocks of the stiffness, equation (B7), one for each pair of nodes that share a triangle.
 
     Parameters
@@ -77,8 +24,8 @@ def stiffness_of(mesh: Mesh, D: Array, thickness: float, pair: Indices, pairs: i
         Mesh [SI]
     D : array (3, 3)
         Stress of strain in the plane [Pa]
-    thickness : float
-        Of the block [m]
+    volume : array (T,)
+        Area times thickness [m^3]
     pair : array (3, 3, T)
         Number of the pair of corners a and b [1]
     pairs : int
@@ -91,7 +38,7 @@ def stiffness_of(mesh: Mesh, D: Array, thickness: float, pair: Indices, pairs: i
     """
     (b, c), none = mesh.slope, np.zeros_like(mesh.slope[0])
     B = np.array([[b, none], [none, c], [c, b]])  # component, axis, corner, triangle
-    DB = np.einsum("pr,rdbt->pdbt", D, B * (thickness * mesh.area))
+    DB = np.einsum("pr,rdbt->pdbt", D, B * volume)
     blocks = np.empty((pairs, 2, 2))
     for first in range(2):
         for second in range(2):

@@ -31,7 +31,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hil_sim.physics.block.block import Block, Held, Stiffness
-from hil_sim.physics.block.elements import IN_PLANE, Z, forces_of, strain_of
+from hil_sim.physics.block.history import carry, recall
 from hil_sim.physics.block.mesh import Indices
 from hil_sim.physics.compiled import Array
 
@@ -121,13 +121,11 @@ def release(block: Block, state: State) -> State:
 
 def attempt(block: Block, state: State, held: Held, dt: float, forces: Array | None = None) -> Attempt:
     """Return one step of that length, uncut, equation (B8); the parameters are those of `advance`."""
-    stiffness = block.stiffness(held, dt, state.unloading)
-    past = np.einsum("i,ikt->kt", stiffness.update.keep, state.q)
-    if block.material.E0 > 0.0:
-        past += stiffness.update.C0 @ state.strain
-    load = -forces_of(block.mesh, _in_plane(stiffness, past), block.thickness)
-    if forces is not None:
-        load += forces
+    stiffness, mesh = block.stiffness(held, dt, state.unloading), block.mesh
+    update, past, load = stiffness.update, np.empty_like(state.strain), np.zeros_like(state.u)
+    shape = mesh.triangles, mesh.slope, block.volume, block.flat, update.C
+    recall(*shape, update.C0, update.keep, state.strain, state.q, past, load)
+    load = -load if forces is None else forces - load
     du = stiffness.solve(load.ravel(), held.u - state.u.ravel()[held.dofs])
     return Attempt(block, state, held, dt, stiffness, past, du)
 
@@ -147,38 +145,17 @@ def accept(tried: Attempt, du: Array | None = None) -> State:
     State
         With the stress and the forces that belong to the increment [SI]
     """
-    block, state, update, past = tried.block, tried.state, tried.stiffness.update, tried.past
-    move = (tried.du if du is None else du).reshape(-1, 2)
-    change = _whole(tried, strain_of(block.mesh, move))
-    stress = past + update.C @ change
-    if block.material.plane == "stress":
-        stress[Z] = 0.0
-    q = update.keep[:, None, None] * state.q + update.gain @ change
-    force = forces_of(block.mesh, stress[IN_PLANE], block.thickness)
-    unloading = block.material.dual and _unloading(tried, move, change, force)
-    strain, t = state.strain + change, state.t + tried.dt
-    return State(t, state.u + move, strain, q, stress, force, tried.held.dofs, state.settled, unloading)
+    block, before, update, past = tried.block, tried.state, tried.stiffness.update, tried.past
+    move = np.ascontiguousarray(tried.du if du is None else du).reshape(-1, 2)
+    strain, q, stress, force = before.strain.copy(), before.q.copy(), np.empty_like(past), np.zeros_like(move)
+    shape = block.mesh.triangles, block.mesh.slope, block.volume, block.flat, update.C
+    carry(*shape, update.keep, update.gain, past, move, strain, q, stress, force)
+    unloading = block.material.dual and _unloading(tried, float((force * move).sum()), strain)
+    t, u = before.t + tried.dt, before.u + move
+    return State(t, u, strain, q, stress, force, tried.held.dofs, before.settled, unloading)
 
 
-def _in_plane(stiffness: Stiffness, past: Array) -> Array:
-    """Return the stress x, y, xy that the past leaves if nothing moves in the plane [Pa]."""
-    C = stiffness.update.C
-    if stiffness.block.material.plane == "strain":
-        return past[IN_PLANE]
-    return past[IN_PLANE] - np.outer(C[IN_PLANE, Z] / C[Z, Z], past[Z])
-
-
-def _whole(tried: Attempt, in_plane: Array) -> Array:
-    """Return the increment of strain x, y, z, xy: none along z, or that which leaves no stress there."""
-    C, change = tried.stiffness.update.C, np.zeros((4, in_plane.shape[1]))
-    change[IN_PLANE] = in_plane
-    if tried.block.material.plane == "stress":
-        change[Z] = -(tried.past[Z] + C[Z] @ change) / C[Z, Z]
-    return change
-
-
-def _unloading(tried: Attempt, move: Array, change: Array, force: Array) -> bool:
-    """Return whether the block did work in a step rather than have it done on it; as before if neither."""
-    work = float((force * move).sum())
-    parts = float((np.abs(tried.past * change).sum(axis=0) * tried.block.mesh.area).sum()) * tried.block.thickness
+def _unloading(tried: Attempt, work: float, strain: Array) -> bool:
+    """Return whether the block did work in a step rather than have it done on it [J]; as before if neither."""
+    parts = float(np.abs(tried.past * (strain - tried.state.strain)).sum(axis=0) @ tried.block.volume)
     return work < 0.0 if abs(work) > ROUNDING * parts else tried.state.unloading
