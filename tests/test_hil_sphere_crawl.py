@@ -115,7 +115,7 @@ def test_it_rolls_where_its_hoop_points(yaw_deg, along, across):
 
 
 def test_a_turn_goes_forward_to_the_left_and_forward_again():
-    walk = Walk("sphere-b-turn", "sphere-b", 2.0, 5.0)
+    walk = Walk("sphere-b-turn", "sphere-b", 2.0, 6.0)
 
     eighth = EIGHTH_MM["b"]
     assert walk.steps(0) == pytest.approx([eighth] * 2 + [0] * 4 + [eighth] * 2, abs=0.2 * eighth)
