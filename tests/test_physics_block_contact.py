@@ -140,6 +140,20 @@ def test_a_shape_finds_the_depth_of_a_force(seed, n, depth, start):
     assert found == pytest.approx(depth if force > 0.0 else g.min(), abs=1e-9)
 
 
+@pytest.mark.parametrize("seed", [1262, 1314, 1988, 2030])
+def test_the_depth_of_a_force_is_found_where_lines_alone_lead_round_in_a_circle(seed):
+    C, g = solid(seed, 4)
+    force = float(touch(C, g - 1.0).force.sum())
+
+    assert touch_with(C, g, force, -10.0, 10.0, 3.0)[0] == pytest.approx(1.0, abs=1e-9)
+
+
+def test_a_pull_that_is_rounding_is_no_force():
+    found = touch(np.eye(2), np.array([-1.0, 1e-16]), np.ones(2, bool))
+
+    assert found.force.tolist() == [1.0, 0.0]
+
+
 def test_a_shape_that_cannot_get_to_its_force_goes_as_far_as_it_may():
     C, g = np.eye(1), np.array([1.0])
 

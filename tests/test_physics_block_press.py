@@ -40,6 +40,7 @@ def test_contact_is_lost_on_the_way_up_and_does_not_come_back(scenario):
     assert DT * lost == pytest.approx(5.14, abs=0.001)  # 5.125 s for short steps; the row allows 0.02 s
     assert not any(touching[lost:])
     assert all(state.force == 0.0 for state in scenario[1][lost:])
+    assert all(state.gap.min() > 0.0 for state in scenario[1][lost:])
 
 
 def test_a_dent_of_more_than_half_the_depth_stays(scenario):
@@ -47,7 +48,7 @@ def test_a_dent_of_more_than_half_the_depth_stays(scenario):
     u = states[-1].block.u[press.nodes, 1]
 
     assert states[-1].block.t == pytest.approx(7.0)
-    assert -u.min() == pytest.approx(2.238e-3, rel=2e-3)  # for short steps; the row, uncut, has 2.240 within 0.5 %
+    assert -u.min() == pytest.approx(2.238e-3, rel=4e-4)  # for short steps; the row allows 0.5 % of 2.240
     assert press.block.mesh.points[press.nodes[np.argmin(u)], 0] == pytest.approx(WIDTH / 2)
 
 
@@ -88,7 +89,10 @@ def test_the_halves_of_the_block_are_mirror_images(scenario):
 
 
 def test_a_step_takes_hardly_more_than_one_set_of_nodes(scenario):
-    assert np.mean([state.solves for state in scenario[1][1:]]) < 1.5
+    solves = [state.solves for state in scenario[1][1:]]
+
+    assert np.mean(solves) < 1.2
+    assert max(solves) <= 3
 
 
 def test_a_press_to_the_left_of_the_middle_mirrors_one_to_the_right():

@@ -176,6 +176,14 @@ def test_the_axis_goes_no_faster_than_its_rate_and_no_deeper_than_its_end():
     assert [state.depth for state in up] == pytest.approx(0.003 - 0.0002 * np.arange(11), abs=1e-12)
 
 
+def test_a_glued_punch_pulls_no_further_than_the_upper_end_of_its_axis():
+    press = press_of(Punch(width=0.020, bonded=True), rate=0.010, least=-0.0005)
+
+    up = run(press, [{"force": -100.0}] * 5)
+
+    assert [state.depth for state in up] == pytest.approx([0.0, -0.0002, -0.0004, -0.0005, -0.0005, -0.0005], abs=1e-12)
+
+
 def test_a_shape_above_the_block_presses_when_it_gets_there():
     states = run(press_of(), ({"depth": -0.002 + 1e-4 * k} for k in range(1, 31)), state=press_of().start(-0.002))
 
@@ -206,6 +214,18 @@ def test_after_a_release_steps_are_cut_until_the_block_has_settled():
     assert press.release(down[-1]).gap.min() > 0.009
 
 
+def test_cut_steps_go_down_at_an_even_speed_too():
+    press = press_of()
+    down = run(press, [{"depth": 2e-3}], 1.0)
+    freed = press.release(down[-1])
+    orders = {dt: [{"depth": -0.010 + 0.040 * dt * k} for k in range(1, round(0.3 / dt) + 1)] for dt in (0.03, 0.003)}
+
+    coarse, fine = (run(press, each, dt, freed)[-1] for dt, each in orders.items())
+
+    assert coarse.force == pytest.approx(fine.force, rel=0.02)
+    assert coarse.force > 1.0
+
+
 def test_a_surface_is_what_faces_upwards():
     points = [(0, 0), (4, 0), (4, 1), (3, 2), (1, 2), (0, 1), (2, 1)]
     around = [(k, (k + 1) % 6, 6) for k in range(6)]
@@ -217,5 +237,8 @@ def test_a_surface_is_what_faces_upwards():
 def test_the_shape_begins_at_the_highest_point_below_it():
     press = press_of(mesh=MESHES["distorted"])
 
+    beside = press_of(Punch(width=0.010), mesh=MESHES["distorted"], at=0.005)
+
+    assert beside.begin == pytest.approx(HEIGHT * (1 + 0.03 * np.sin(np.pi / 8)))
     assert press.begin == press.block.mesh.points[:, 1].max() == pytest.approx(1.03 * HEIGHT)
     assert press.start().gap.min() >= 0.0

@@ -123,7 +123,7 @@ class Press:
         goal = None if depth is None else min(max(depth, begin - far), begin + far)
         for part in range(1, parts + 1):
             there = None if goal is None else begin + part / parts * (goal - begin)
-            state = self._step(state, dt / parts, there, force)
+            state = self._step(state, dt / parts, there, force or 0.0)
         return state
 
     def release(self, state: Pressed) -> Pressed:
@@ -133,8 +133,8 @@ class Press:
         freed = release(self.block, state.block)
         return Pressed(freed, clear, 0.0, np.zeros((n, 2)), opening, np.zeros(n, bool), None)
 
-    def _step(self, state: Pressed, dt: float, depth: float | None, force: float | None) -> Pressed:
-        """Return the state after an uncut step to a depth [m] or a force [N]."""
+    def _step(self, state: Pressed, dt: float, depth: float | None, force: float) -> Pressed:
+        """Return the state after an uncut step to a depth [m], or without one to a force [N]."""
         tried = attempt(self.block, state.block, self.supports, dt)
         if state.glue is None:
             depth, met = self._touch(state, tried, depth, force)
@@ -149,19 +149,18 @@ class Press:
         total = float(-forces[:, 1].sum()) + 0.0
         return Pressed(block, depth, total, forces, met.gap, met.active, state.glue, met.solves)
 
-    def _touch(self, state: Pressed, tried: Attempt, depth: float | None, force: float | None) -> tuple[float, Touch]:
+    def _touch(self, state: Pressed, tried: Attempt, depth: float | None, force: float) -> tuple[float, Touch]:
         """Return depth [m] and contact of a shape that only presses."""
+        g = self._gap - (state.block.u.ravel() + tried.du)[2 * self.nodes + 1]
+        if depth is not None and (g > depth).all():
+            return depth, Touch(np.zeros_like(g), g - depth, np.zeros(g.shape, bool), 0)
         every = len(self._axes)
         C = self._compliance(tried.stiffness)[1][every - 1 :: every, every - 1 :: every]
-        g = self._gap - (state.block.u.ravel() + tried.du)[2 * self.nodes + 1]
-        if force is None:
-            assert depth is not None
+        if depth is not None:
             return depth, touch(C, g - depth, state.active)
         return touch_with(C, g, force, *self._reach(state, tried.dt), state.depth, state.active)
 
-    def _pull(
-        self, state: Pressed, tried: Attempt, depth: float | None, force: float | None
-    ) -> tuple[float, Touch, Array]:
+    def _pull(self, state: Pressed, tried: Attempt, depth: float | None, force: float) -> tuple[float, Touch, Array]:
         """Return depth [m], contact and forces (n, 2) [N] of a punch that is glued to its nodes."""
         C = self._compliance(tried.stiffness)[1]
         assert state.glue is not None
