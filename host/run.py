@@ -163,14 +163,15 @@ def upload(robot: Robot, code: bytes, progress: Progress) -> None:
 
 
 def _watched(robot: Robot, progress: Progress) -> Event:
-    """Watch the running program and return the event that ended it; a moment more is recorded."""
+    """Watch the running program and return the event that ended it; a moment more is recorded, and may yet trip."""
     start_ms = robot.now_ms()
     last = None
     for record in robot.watch():
         progress("run", (record.host_ms - start_ms) / 1000)
         last = record
-    for _ in robot.listen(COOL_MS):
-        pass
+    for record in robot.listen(COOL_MS):
+        if isinstance(record, Event) and record.event == "tripped":
+            last = record
     if not isinstance(last, Event):
         raise LinkLost("the robot ended the program without a word")
     return last

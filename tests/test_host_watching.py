@@ -2,6 +2,7 @@
 
 from itertools import pairwise
 
+from hil_sim.faults.happening import schedule
 from host.gait.compiler import compile_script
 from host.gait.script import loads
 from host.link import open_link
@@ -84,3 +85,26 @@ def test_a_run_is_the_same_for_the_robot_whether_it_is_watched_or_not():
             hashes.append((link.observer.trace_sha256(), link.now_s()))
 
     assert hashes[0] == hashes[1]
+
+
+class Announced:
+    """A progress that lets something happen to the bench in the last moment of a program."""
+
+    def __init__(self, link, fault):
+        self.bench, self.fault = link.bench, fault
+
+    def __call__(self, stage, done):
+        if stage == "run" and done > 0.28 and self.fault:
+            schedule(self.bench, self.bench.clock.now_us + 60_000, self.fault)
+            self.fault = ""
+
+
+def test_a_trip_just_after_the_end_of_a_program_is_how_it_ended():
+    link = open_link("sim:circular?body=still")
+    robot = Robot(link)
+    robot.connect()
+    compiled = compile_script(loads(SCRIPT), robot.profile)
+
+    ending = run(robot, compiled.program, Announced(link, "estop-open"))
+
+    assert (ending.result, ending.event.event) == ("fault", "tripped")
