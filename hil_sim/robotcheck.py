@@ -10,7 +10,8 @@ from typing import Any
 from hil_sim.robotkeys import BATTERY, BENCH, KEYS, KINDS, UNITS, Key, features_of, keys_of
 from hil_sim.robottexts import CHOICES, TEXTS, Sections, Text, mistakes_in, texts_of
 
-STANDINGS = ("paper", "read", "derived", "assumed", "fitted")
+STANDINGS = ("paper", "read", "measured", "derived", "assumed", "fitted")
+NAMED = {"read": "read where", "measured": "measured on what"}  # standings that need a source
 FOR_THE_READER = ("derived",)  # a section that is held to the form but not to the table of keys
 INSIDE = ("hub.radius_mm", "hub.attach_mm", "core.radius_mm", "core.attach_mm")  # the shell
 RISING = ("martensite_finish", "martensite_start", "austenite_start", "austenite_finish")
@@ -119,8 +120,8 @@ class Check:
         standing, _, source = text.partition(":")
         if standing not in STANDINGS:
             self._say(name, f"{name}: standing {standing!r} is none of {', '.join(STANDINGS)}")
-        elif standing == "read" and not source.strip():
-            self._say(name, f"{name}: read where? Write it as read: source")
+        elif standing in NAMED and not source.strip():
+            self._say(name, f"{name}: {NAMED[standing]}? Write it as {standing}: source")
         self.entries[name] = Entry(name, value, standing, source.strip())
 
     def _missing(self) -> None:
