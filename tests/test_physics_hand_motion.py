@@ -72,6 +72,24 @@ def test_damping_and_slip_only_take_energy(spin, x, y, mu):
     assert (np.diff(energies) < 1e-7).all()
 
 
+@pytest.mark.parametrize(
+    ("contact", "mu", "h"), [("stick", 0, 0.037), ("coulomb", 0.05, 0.012), ("frictionless", 0, 0)]
+)
+def test_motors_do_all_the_work_that_is_stored_or_lost(contact, mu, h):
+    """Over a grip, a swing and a release, also where the object slides out; within what a short step errs by."""
+    hand = hand_of(CUBE._replace(motion="dynamic", contact=contact, mu=mu, h=h, g=9.81))
+    hand.step, lost = 5e-5, []
+    start, work = total(hand), 0.0
+    for share in np.linspace(0, 1, 12_000):
+        before, motor = hand.q, hand.motor
+        advance(hand, joints(2.5 * np.sin(6 * share), 8 * np.sin(15 * share)), hand.step)
+        work += float((0.5 * (motor + hand.motor) * (hand.q - before)).sum())
+        lost.append(work - total(hand) + start - 0.5 * hand.servo.J * (hand.rates**2).sum())
+
+    assert lost[-1] > 1e-3
+    assert (np.maximum.accumulate(lost) - lost).max() < 3e-4
+
+
 def test_a_damped_object_comes_to_rest_where_it_was():
     hand = kicked(DAMPED)
     before = hand.pose
