@@ -37,6 +37,15 @@ def test_a_joint_moves_where_it_is_told_and_is_limp_afterwards(softrig):
     assert told["joints"]["R"]["reached_deg"] == pytest.approx(-8, abs=SERVO_DEG)
 
 
+def test_the_status_tells_how_joints_stand_and_how_the_object_lies(softrig):
+    fields = told_as_json(softrig("status", "--robot", EXPERIMENT, "--json"))
+    lines = softrig("status", "--robot", EXPERIMENT).out.splitlines()
+
+    assert fields["joints"]["L"] == {"deg": pytest.approx(0, abs=SERVO_DEG), "commanded_deg": None, "ma": 0}
+    assert fields["object_deg"] == pytest.approx(0, abs=0.1)
+    assert [line.split()[0] for line in lines[-3:]] == ["R", "L", "object"]
+
+
 def test_an_object_is_turned_as_the_control_law_says(softrig):
     """The swing is that of row F10: -6.384 deg for 5 deg."""
     told = told_as_json(softrig("orient", "5deg", "--grip", "2.5deg", "--robot", EXPERIMENT, "--json"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import asdict
+from typing import Any
 
 import click
 
@@ -11,8 +12,11 @@ from host.cli.connection import connected
 from host.cli.options import json_option, robot_option
 from host.cli.output import emit
 from host.profile import Parts
-from host.records import Status
+from host.records import Status, Telemetry
+from host.robot import Robot
 from protocol import causes
+
+PERIOD_MS, LISTEN_MS = 50, 500
 
 
 @click.command("status")
@@ -22,18 +26,39 @@ from protocol import causes
 def command(robot: str, with_coils: bool, as_json: bool) -> None:
     """Ask a robot for its state, its last fault, its supply and its line.
 
-    Coils are measured by the self-test before arming, and while they are on.
+    Coils are measured by the self-test before arming, and while they are on; joints and what a camera sees always are.
     """
     with connected(robot) as face:
         status = face.status()
         parts = face.profile.parts
         coils = face.coils() if with_coils and parts.coils else {}
+        joints = _joints(face) if parts.joints else {}
         line = face.statistics()
     fields = {"coils_seen": {label: asdict(coil) for label, coil in coils.items()}} if with_coils else {}
-    lines = [f"  {label:<11} {coil}" for label, coil in coils.items()]
+    lines = [*_joint_lines(joints), *(f"  {label:<11} {coil}" for label, coil in coils.items())]
     if with_coils and not coils:
-        lines = ["  no coils"]
-    emit(as_json, {**_fields(status, line), **fields}, [*_lines(status, line, parts), *lines])
+        lines.append("  no coils")
+    emit(as_json, {**_fields(status, line), **joints, **fields}, [*_lines(status, line, parts), *lines])
+
+
+def _joints(face: Robot) -> dict[str, Any]:
+    """Return how each joint stands, and the object if a camera sees it; nothing from a robot that tells none."""
+    face.overhear(PERIOD_MS)
+    heard = next((record for record in face.listen(LISTEN_MS) if isinstance(record, Telemetry)), None)
+    face.overhear(0)
+    if heard is None:
+        return {}
+    rows = zip(face.profile.joint_labels, heard.joint_deg, heard.commanded_deg, heard.joint_ma, strict=True)
+    joints = {label: {"deg": deg, "commanded_deg": told, "ma": ma} for label, deg, told, ma in rows}
+    return {"joints": joints, "object_deg": heard.object_deg}
+
+
+def _joint_lines(seen: dict[str, Any]) -> Iterator[str]:
+    for label, joint in seen.get("joints", {}).items():
+        told = "limp" if joint["commanded_deg"] is None else f"told {joint['commanded_deg']:.2f} deg"
+        yield f"  {label:<11} {joint['deg']:.2f} deg, {told}, {joint['ma'] / 1000:.2f} A"
+    if seen.get("object_deg") is not None:
+        yield f"  object      {seen['object_deg']:.2f} deg"
 
 
 def _fields(status: Status, line: dict[str, int | None]) -> dict[str, object]:
