@@ -10,6 +10,8 @@ from protocol.canbus import ALL
 from protocol.frames import STOP
 from protocol.link import Link
 
+pytestmark = pytest.mark.timeout(400)  # of wall time, on a busy machine: a second of eight robots takes one of a core
+
 COUNT = 8
 STEP_US = 5_000
 PWM_US = 700  # until the chip follows
