@@ -37,6 +37,8 @@ def test_a_point_relaxes_exactly_whatever_the_step(material, dt):
     found = np.array([state.stress[1, 0] for state in states])
     expected = 0.1 * isotropic(0.35)[1, 1] * push_and_hold(material, np.where(t < 2.01, np.minimum(t, 2.0), t), 2.0)
     assert found == pytest.approx(expected, rel=1e-12)
+    for x, y, z, _ in (state.stress[:, 0] for state in states):
+        assert z == pytest.approx(0.35 * (x + y), rel=1e-12)
 
 
 def test_creep_is_of_first_order_in_the_step():

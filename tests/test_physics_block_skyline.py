@@ -85,6 +85,16 @@ def test_factors_are_kept_by_step_and_supports():
     assert block.stiffness(hold((bottom, 0.0, 0.0)), 0.1) is not block.stiffness(low, 0.1)
 
 
+def test_a_dual_modulus_has_another_factor_in_unloading():
+    block = Block(rectangle(0.08, 0.04, 6, 3), THREE._replace(c0_unloading=1e3))
+    held = hold((ends(block.mesh)[0], 0.0, 0.0))
+
+    loading, unloading = (block.stiffness(held, 0.1, each) for each in (False, True))
+
+    assert loading is block.stiffness(held, 0.1) is not unloading
+    assert (loading.update.C > unloading.update.C)[:3, :3].all()
+
+
 @pytest.mark.parametrize("nodes", [[], [0], [0, 4, 8]])
 def test_supports_that_leave_the_block_free_are_refused(nodes):
     block = Block(rectangle(0.08, 0.04, 6, 3), THREE)
