@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hil_sim.physics.block.block import Held, hold
-from hil_sim.physics.block.indenters import Cylinder
+from hil_sim.physics.block.indenters import Cylinder, Punch
 from hil_sim.physics.block.press import Axis, Press
 from hil_sim.physics.block.step import advance
 from tests.block_samples import HEIGHT, WIDTH
@@ -128,5 +128,7 @@ def test_a_support_in_the_way_of_the_press_is_told_by_its_depth():
     blocked = Press(press.block, supports, Cylinder(R=0.015), Axis(at=WIDTH / 2 + 0.0025))
 
     assert mesh.points[corner, 1] == HEIGHT
-    with pytest.raises(ValueError, match="meets a support"):
+    with pytest.raises(ValueError, match="all surface nodes below the indenter are held"):
+        Press(press.block, supports, Punch(width=1e-3), Axis(at=WIDTH / 2))
+    with pytest.raises(ValueError, match=r"meets what the block stands on at 0\.000"):
         run(blocked, [{"depth": 1e-3}])

@@ -33,6 +33,11 @@ REFUSED = (
     (lambda: run(press_of(), [{"depth": np.nan}]), "depth = nan m"),
     (lambda: run(press_of(), [{"force": -1.0}]), "force = -1 N, at least 0 N"),
     (lambda: run(press_of(), [{"force": np.inf}]), "force = inf N is not a finite number"),
+    (
+        lambda: run(press_of(), [{"depth": 0.041}]),
+        "depth = 0.041 m: the indenter meets what the block stands on at 0.04",
+    ),
+    (lambda: run(press_of(), [{"force": 1e5}]), "the indenter meets what the block stands on at 0.04 m"),
     (lambda: run(press_of(), [{"depth": 0.001}], dt=0.0), "dt = 0 s, must be above 0 s"),
 )
 
@@ -214,16 +219,18 @@ def test_after_a_release_steps_are_cut_until_the_block_has_settled():
     assert press.release(down[-1]).gap.min() > 0.009
 
 
-def test_cut_steps_go_down_at_an_even_speed_too():
-    press = press_of()
-    down = run(press, [{"depth": 2e-3}], 1.0)
-    freed = press.release(down[-1])
-    orders = {dt: [{"depth": -0.010 + 0.040 * dt * k} for k in range(1, round(0.3 / dt) + 1)] for dt in (0.03, 0.003)}
+def test_a_cut_step_is_ten_short_ones_at_an_even_speed():
+    press = press_of(rate=0.10)
+    freed = press.release(run(press, [{"depth": 2e-3}])[-1])
+    short = freed._replace(block=freed.block._replace(settled=0.0))
+    for what in ({"depth": 2e-3}, {"force": 5.0}):
+        whole = run(press, [what] * 6, 0.03, freed)[-1]
+        ways = -0.010 + 0.10 * 0.003 * np.arange(1, 61)
+        orders = [{"depth": min(way, 2e-3)} for way in ways] if "depth" in what else [what] * 60
+        parts = run(press, orders, 0.003, short)[-1]
 
-    coarse, fine = (run(press, each, dt, freed)[-1] for dt, each in orders.items())
-
-    assert coarse.force == pytest.approx(fine.force, rel=0.02)
-    assert coarse.force > 1.0
+        assert whole.force == pytest.approx(parts.force, rel=1e-10)
+        assert whole.force > 1.0
 
 
 def test_a_surface_is_what_faces_upwards():

@@ -27,6 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hil_sim.physics.block.material import BlockError
 from hil_sim.physics.compiled import Array
 
 Mask = NDArray[np.bool_]
@@ -39,7 +40,7 @@ SHARE = 1e-12  # of a force, to which it is met [1]
 TINY = 1e-300  # [N]
 
 
-class ContactUnsettled(ArithmeticError):
+class ContactUnsettled(BlockError):
     """The set of points that touch could not be found: the compliance is not positive definite to rounding."""
 
 

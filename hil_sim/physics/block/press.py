@@ -74,11 +74,15 @@ class Press:
             )
         self.begin = float(y[under].max())  # height of the lowest point at depth 0 [m]
         free = under & ~np.isin(2 * surface + 1, supports.dofs)
+        if not free.any():
+            raise IndenterError("all surface nodes below the indenter are held: there is nothing to press")
         self.nodes: Indices = surface[free]  # that may touch, from left to right
         self._axes = (0, 1) if indenter.bonded else (1,)  # along which the shape exerts forces
         self._gap = gap(indenter, x[free] - axis.at, y[free], 0.0, self.begin)
         held = under & ~free
-        self.floor = float(gap(indenter, x[held] - axis.at, y[held], 0.0, self.begin).min(initial=inf))
+        stop = gap(indenter, x[held] - axis.at, y[held], 0.0, self.begin)
+        lowest = self.begin - float(block.mesh.points[:, 1].min())
+        self.floor = float(stop.min(initial=lowest))  # depth at which the shape meets what does not give way [m]
         self._kept: WeakKeyDictionary[Stiffness, tuple[Array, Array]] = WeakKeyDictionary()
 
     def start(self, depth: float = 0.0) -> Pressed:
@@ -142,7 +146,7 @@ class Press:
         else:
             depth, met, forces = self._pull(state, tried, depth, force)
         if depth > self.floor:
-            raise IndenterError(f"depth = {depth:g} m: the indenter meets a support at {self.floor:g} m")
+            raise IndenterError(f"depth = {depth:g} m: the indenter meets what the block stands on at {self.floor:g} m")
         block = accept(tried, self._moved(tried, forces))
         if state.active.any() and not met.active.any():
             block = release(self.block, block)
