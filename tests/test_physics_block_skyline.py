@@ -15,7 +15,7 @@ from tests.block_samples import THREE, distorted, ends, scattered
 
 def dense(block, stiffness):
     """Return the whole stiffness as a square array."""
-    blocks = stiffness_of(block.mesh, stiffness.D, block.volume, block.pair, block.i.size)
+    blocks = stiffness_of(block.mesh, stiffness.D, block.triangles.volume, block.pair, block.i.size)
     K = np.zeros((block.mesh.nodes, 2, block.mesh.nodes, 2))
     K[block.i, :, block.j, :] = blocks
     return K.reshape(2 * block.mesh.nodes, -1)

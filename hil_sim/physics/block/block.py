@@ -14,8 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hil_sim.physics.block import history, skyline
+from hil_sim.physics.block import skyline
 from hil_sim.physics.block.elements import stiffness_of
+from hil_sim.physics.block.history import Triangles, carry
 from hil_sim.physics.block.law import fastest
 from hil_sim.physics.block.material import BlockError, Material, Update, checked, update_of
 from hil_sim.physics.block.mesh import Indices, Mesh
@@ -74,7 +75,7 @@ class Stiffness:
         self.update = update
         self.block, self.dofs = block, dofs
         self.D = condensed(update.C, block.material.plane)
-        blocks = stiffness_of(block.mesh, self.D, block.volume, block.pair, block.i.size)
+        blocks = stiffness_of(block.mesh, self.D, block.triangles.volume, block.pair, block.i.size)
         self.entries = self._filled(blocks)
         self._couple(blocks)
         row = skyline.factor(self.entries, block.start, block.first, SINGULAR)
@@ -161,14 +162,14 @@ class Block:
         if not 0.0 < thickness < np.inf:
             raise BlockError(f"thickness = {thickness:g} m, must be above 0 m and finite")
         self.mesh, self.material, self.thickness = mesh, checked(material), thickness
-        self.volume, self.flat = thickness * mesh.area, material.plane == "stress"  # of the triangles [m^3]
+        self.triangles = Triangles(mesh.triangles, mesh.slope, thickness * mesh.area, material.plane == "stress")
         self.fastest = fastest(material)  # [1/s]
         self.i, self.j = pairs_of(mesh)
         keys = np.repeat(mesh.triangles[:, None], 3, axis=1) * mesh.nodes + mesh.triangles
         self.pair = np.searchsorted(self.i * mesh.nodes + self.j, keys)
         self._lay_out(order_of(mesh.points, self.i, self.j))
         self._kept: OrderedDict[tuple[bytes, float, bool], Stiffness] = OrderedDict()
-        prepare(history.carry)
+        prepare(carry)
 
     def stiffness(self, held: Held, dt: float, unloading: bool = False) -> Stiffness:
         r"""Return the factored stiffness of a step.

@@ -7,44 +7,34 @@ work waits for a core for longer than the whole step takes (measured: 8 instead 
 Held against scikit-fem and the closed forms in tests/test_physics_block_peers.py and test_physics_block_step.py.
 """
 
+from typing import NamedTuple
+
+from hil_sim.physics.block.material import Update
 from hil_sim.physics.block.mesh import Indices
 from hil_sim.physics.compiled import Array, lean
 
 X, Y, Z, XY = range(4)
 
 
+class Triangles(NamedTuple):
+    """The triangles of a block as the kernels take them."""
+
+    corners: Indices  # (3, T) nodes of each
+    slope: Array  # (2, 3, T) derivatives of the shape functions [1/m]
+    volume: Array  # (T,) area times thickness [m^3]
+    flat: bool  # whether the stress along z is none, rather than the strain
+
+
 @lean
-def recall(
-    triangles: Indices,
-    slope: Array,
-    volume: Array,
-    flat: bool,
-    C: Array,
-    C0: Array,
-    keep: Array,
-    strain: Array,
-    q: Array,
-    past: Array,
-    forces: Array,
-) -> None:
+def recall(triangles: Triangles, update: Update, strain: Array, q: Array, past: Array, forces: Array) -> None:
     """Write the stress that the past leaves if nothing moves, and add the forces that hold the nodes against it.
 
     Parameters
     ----------
-    triangles : array (3, T)
-        Nodes of each triangle [1]
-    slope : array (2, 3, T)
-        Derivatives of the shape functions [1/m]
-    volume : array (T,)
-        Area times thickness [m^3]
-    flat : bool
-        Whether the stress along z is none, rather than the strain [1]
-    C : array (4, 4)
-        Stress of an increment of strain [Pa]
-    C0 : array (4, 4)
-        Of the Voigt element's spring [Pa]
-    keep : array (branches,)
-        What is left of the stresses of the branches [1]
+    triangles : Triangles
+        Triangles [SI]
+    update : Update
+        What the step does [SI]
     strain : array (4, T)
         At the beginning of the step [1]
     q : array (branches, 4, T)
@@ -54,9 +44,9 @@ def recall(
     forces : array (N, 2)
         Forces, added to [N]
     """
-    swell, shear = C0[X, Y], C0[XY, XY]
-    share = C[X, Z] / C[Z, Z] if flat else 0.0
-    for t in range(volume.size):
+    swell, shear, keep = update.C0[X, Y], update.C0[XY, XY], update.keep
+    share = update.C[X, Z] / update.C[Z, Z] if triangles.flat else 0.0
+    for t in range(triangles.volume.size):
         bulk = swell * (strain[X, t] + strain[Y, t] + strain[Z, t])
         x, y = bulk + 2.0 * shear * strain[X, t], bulk + 2.0 * shear * strain[Y, t]
         z, xy = bulk + 2.0 * shear * strain[Z, t], shear * strain[XY, t]
@@ -66,18 +56,13 @@ def recall(
             z += keep[i] * q[i, Z, t]
             xy += keep[i] * q[i, XY, t]
         past[X, t], past[Y, t], past[Z, t], past[XY, t] = x, y, z, xy
-        spread(triangles, slope, volume, t, x - share * z, y - share * z, xy, forces)
+        _spread(triangles, t, x - share * z, y - share * z, xy, forces)
 
 
 @lean
 def carry(
-    triangles: Indices,
-    slope: Array,
-    volume: Array,
-    flat: bool,
-    C: Array,
-    keep: Array,
-    gain: Array,
+    triangles: Triangles,
+    update: Update,
     past: Array,
     du: Array,
     strain: Array,
@@ -89,20 +74,10 @@ def carry(
 
     Parameters
     ----------
-    triangles : array (3, T)
-        Nodes of each triangle [1]
-    slope : array (2, 3, T)
-        Derivatives of the shape functions [1/m]
-    volume : array (T,)
-        Area times thickness [m^3]
-    flat : bool
-        Whether the stress along z is none, rather than the strain [1]
-    C : array (4, 4)
-        Stress of an increment of strain [Pa]
-    keep : array (branches,)
-        What is left of the stresses of the branches [1]
-    gain : array (branches, 4, 4)
-        Their stress of an increment of strain [Pa]
+    triangles : Triangles
+        Triangles [SI]
+    update : Update
+        What the step does [SI]
     past : array (4, T)
         Stress that the past leaves [Pa]
     du : array (N, 2)
@@ -116,27 +91,16 @@ def carry(
     forces : array (N, 2)
         Forces, added to [N]
     """
-    swell, shear = C[X, Y], C[XY, XY]
-    for t in range(volume.size):
-        x = y = z = xy = 0.0
-        for a in range(3):
-            node, b, c = triangles[a, t], slope[0, a, t], slope[1, a, t]
-            x += b * du[node, 0]
-            y += c * du[node, 1]
-            xy += c * du[node, 0] + b * du[node, 1]
-        if flat:
-            z = -(past[Z, t] + swell * (x + y)) / C[Z, Z]
+    swell, shear, stiff = update.C[X, Y], update.C[XY, XY], update.C[Z, Z]
+    for t in range(triangles.volume.size):
+        x, y, xy = _stretched(triangles, t, du)
+        z = -(past[Z, t] + swell * (x + y)) / stiff if triangles.flat else 0.0
         bulk = swell * (x + y + z)
         stress[X, t], stress[Y, t] = past[X, t] + bulk + 2.0 * shear * x, past[Y, t] + bulk + 2.0 * shear * y
-        stress[Z, t] = 0.0 if flat else past[Z, t] + bulk + 2.0 * shear * z
+        stress[Z, t] = 0.0 if triangles.flat else past[Z, t] + bulk + 2.0 * shear * z
         stress[XY, t] = past[XY, t] + shear * xy
-        spread(triangles, slope, volume, t, stress[X, t], stress[Y, t], stress[XY, t], forces)
-        for i in range(keep.size):
-            mu, part = gain[i, XY, XY], gain[i, X, Y] * (x + y + z)
-            q[i, X, t] = keep[i] * q[i, X, t] + part + 2.0 * mu * x
-            q[i, Y, t] = keep[i] * q[i, Y, t] + part + 2.0 * mu * y
-            q[i, Z, t] = keep[i] * q[i, Z, t] + part + 2.0 * mu * z
-            q[i, XY, t] = keep[i] * q[i, XY, t] + mu * xy
+        _spread(triangles, t, stress[X, t], stress[Y, t], stress[XY, t], forces)
+        _grow(update, t, x, y, z, xy, q)
         strain[X, t] += x
         strain[Y, t] += y
         strain[Z, t] += z
@@ -144,11 +108,32 @@ def carry(
 
 
 @lean
-def spread(
-    triangles: Indices, slope: Array, volume: Array, t: int, x: float, y: float, xy: float, forces: Array
-) -> None:
+def _stretched(triangles: Triangles, t: int, du: Array) -> tuple[float, float, float]:
+    """Return the increment of strain x, y, xy of triangle t, equation (B7)."""
+    x = y = xy = 0.0
+    for a in range(3):
+        node, b, c = triangles.corners[a, t], triangles.slope[0, a, t], triangles.slope[1, a, t]
+        x += b * du[node, 0]
+        y += c * du[node, 1]
+        xy += c * du[node, 0] + b * du[node, 1]
+    return x, y, xy
+
+
+@lean
+def _grow(update: Update, t: int, x: float, y: float, z: float, xy: float, q: Array) -> None:
+    """Carry the stresses of the branches in triangle t over an increment of strain, equation (B2)."""
+    for i in range(update.keep.size):
+        keep, shear, bulk = update.keep[i], update.gain[i, XY, XY], update.gain[i, X, Y] * (x + y + z)
+        q[i, X, t] = keep * q[i, X, t] + bulk + 2.0 * shear * x
+        q[i, Y, t] = keep * q[i, Y, t] + bulk + 2.0 * shear * y
+        q[i, Z, t] = keep * q[i, Z, t] + bulk + 2.0 * shear * z
+        q[i, XY, t] = keep * q[i, XY, t] + shear * xy
+
+
+@lean
+def _spread(triangles: Triangles, t: int, x: float, y: float, xy: float, forces: Array) -> None:
     """Add the forces that hold the nodes of triangle t against a stress x, y, xy [Pa], equation (B7)."""
     for a in range(3):
-        node, b, c = triangles[a, t], slope[0, a, t], slope[1, a, t]
-        forces[node, 0] += volume[t] * (b * x + c * xy)
-        forces[node, 1] += volume[t] * (c * y + b * xy)
+        node, b, c = triangles.corners[a, t], triangles.slope[0, a, t], triangles.slope[1, a, t]
+        forces[node, 0] += triangles.volume[t] * (b * x + c * xy)
+        forces[node, 1] += triangles.volume[t] * (c * y + b * xy)

@@ -121,10 +121,9 @@ def release(block: Block, state: State) -> State:
 
 def attempt(block: Block, state: State, held: Held, dt: float, forces: Array | None = None) -> Attempt:
     """Return one step of that length, uncut, equation (B8); the parameters are those of `advance`."""
-    stiffness, mesh = block.stiffness(held, dt, state.unloading), block.mesh
-    update, past, load = stiffness.update, np.empty_like(state.strain), np.zeros_like(state.u)
-    shape = mesh.triangles, mesh.slope, block.volume, block.flat, update.C
-    recall(*shape, update.C0, update.keep, state.strain, state.q, past, load)
+    stiffness = block.stiffness(held, dt, state.unloading)
+    past, load = np.empty_like(state.strain), np.zeros_like(state.u)
+    recall(block.triangles, stiffness.update, state.strain, state.q, past, load)
     load = -load if forces is None else forces - load
     du = stiffness.solve(load.ravel(), held.u - state.u.ravel()[held.dofs])
     return Attempt(block, state, held, dt, stiffness, past, du)
@@ -145,11 +144,10 @@ def accept(tried: Attempt, du: Array | None = None) -> State:
     State
         With the stress and the forces that belong to the increment [SI]
     """
-    block, before, update, past = tried.block, tried.state, tried.stiffness.update, tried.past
+    block, before, past = tried.block, tried.state, tried.past
     move = np.ascontiguousarray(tried.du if du is None else du).reshape(-1, 2)
     strain, q, stress, force = before.strain.copy(), before.q.copy(), np.empty_like(past), np.zeros_like(move)
-    shape = block.mesh.triangles, block.mesh.slope, block.volume, block.flat, update.C
-    carry(*shape, update.keep, update.gain, past, move, strain, q, stress, force)
+    carry(block.triangles, tried.stiffness.update, past, move, strain, q, stress, force)
     unloading = block.material.dual and _unloading(tried, float((force * move).sum()), strain)
     t, u = before.t + tried.dt, before.u + move
     return State(t, u, strain, q, stress, force, tried.held.dofs, before.settled, unloading)
@@ -157,5 +155,5 @@ def accept(tried: Attempt, du: Array | None = None) -> State:
 
 def _unloading(tried: Attempt, work: float, strain: Array) -> bool:
     """Return whether the block did work in a step rather than have it done on it [J]; as before if neither."""
-    parts = float(np.abs(tried.past * (strain - tried.state.strain)).sum(axis=0) @ tried.block.volume)
+    parts = float(np.abs(tried.past * (strain - tried.state.strain)).sum(axis=0) @ tried.block.triangles.volume)
     return work < 0.0 if abs(work) > ROUNDING * parts else tried.state.unloading
