@@ -2,8 +2,8 @@
 
 Axes: x to the right and y up from the middle between the joints; angles are positive counter-clockwise. R is the right
 finger, L the left one; at 0 degrees their links point up. Without friction nothing holds the object along its faces:
-"along" is then "undetermined", and its place there a convention. An object that is not gripped stays where it is.
-ASSUMED: a stand holds it.
+"along" is then "undetermined", and its place there a convention. An object that is not gripped is on a stand, where a
+single tip pushes it aside (ASSUMED, see physics/hand/still.py).
 
     plant = FingersPlant(load("fingers"))
     plant.command([8.0, -8.0])

@@ -76,15 +76,33 @@ def test_an_object_is_taken_from_its_stand_swung_and_given_back(motion):
     assert pytest.approx([0, 0]) == hand.N
 
 
-def test_one_finger_alone_presses_on_the_object_on_its_stand():
-    hand = hand_of(REAL)
-    for _ in range(100):
-        advance(hand, (np.radians(2), 0.0), TICK)
+@MOTIONS
+def test_one_finger_alone_pushes_the_object_aside_on_its_stand(motion):
+    hand = hand_of(REAL._replace(motion=motion))
+    go(hand, (0, 0), (-0.5, 3), 0.5)
+    go(hand, (-0.5, 3), (-0.5, 3), 0.3)
 
     assert not hand.gripped
-    assert hand.pose == pytest.approx([0, REAL.L, 0])
-    assert hand.d[0] == pytest.approx(REAL.L * np.sin(np.radians(2)), rel=1e-3)
-    assert hand.tau[0] < 0 < hand.current[0] - 0.1
+    assert hand.pose == pytest.approx([-REAL.L * np.sin(np.radians(2.5)), REAL.L, 0], abs=2e-5)
+    assert hand.d == pytest.approx([0, 0], abs=2e-5)
+    assert np.abs(hand.motor).max() < 0.02
+
+
+@MOTIONS
+def test_an_object_that_was_let_go_aside_is_gripped_in_the_middle_again(motion):
+    hand = hand_of(REAL._replace(motion=motion))
+    go(hand, (0, 0), (2.5, 0), 1.0)
+    go(hand, (2.5, 0), (2.5, 8), 1.0)
+    go(hand, (2.5, 8), (-1, 8), 0.5)
+    aside = hand.pose[0]
+    go(hand, (-1, 8), (-1, 0), 1.0)
+    go(hand, (-1, 0), (2.5, 0), 1.0)
+    go(hand, (2.5, 0), (2.5, 0), 0.3)
+
+    assert aside < -0.010
+    assert hand.gripped
+    assert hand.pose[0] == pytest.approx(0, abs=2e-3)
+    assert np.abs(hand.motor).max() < 0.8 * REAL.stall
 
 
 @MOTIONS

@@ -79,10 +79,12 @@ def test_motors_do_all_the_work_that_is_stored_or_lost(contact, mu, h):
     """Over a grip, a swing and a release, also where the object slides out; within what a short step errs by."""
     hand = hand_of(CUBE._replace(motion="dynamic", contact=contact, mu=mu, h=h, g=9.81))
     hand.step, lost = 5e-5, []
-    start, work = total(hand), 0.0
+    start, work, told = total(hand), 0.0, np.zeros(2)
     for share in np.linspace(0, 1, 12_000):
-        before, motor = hand.q, hand.motor
-        advance(hand, joints(2.5 * np.sin(6 * share), 8 * np.sin(15 * share)), hand.step)
+        before, motor, last = hand.q, hand.motor, told
+        told = np.array(joints(2.5 * np.sin(6 * share), 8 * np.sin(15 * share)))
+        advance(hand, told, hand.step)
+        motor += hand.servo.J * hand.servo.omega**2 * (told - last)  # as the step begins
         work += float((0.5 * (motor + hand.motor) * (hand.q - before)).sum())
         lost.append(work - total(hand) + start - 0.5 * hand.servo.J * (hand.rates**2).sum())
 

@@ -144,7 +144,7 @@ class Hand:
 
     @property
     def gripped(self) -> bool:
-        """Whether the tips hold the object; otherwise it stays where it is, on a stand."""
+        """Whether the tips hold the object; otherwise it is on a stand."""
         return bool(self.state[GRIPPED])
 
     @property

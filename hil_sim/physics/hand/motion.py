@@ -56,7 +56,7 @@ from hil_sim.physics.hand.state import (
     X,
     Y,
 )
-from hil_sim.physics.hand.still import hold, resistance, within
+from hil_sim.physics.hand.still import give_way, hold, resistance, within
 
 STEP = 2.5e-4  # [s] errs by 1e-3 in a fast transient, 3e-2 at twice that
 TRIAL = 4  # row of the workspace `rows`, after the four of the method
@@ -127,6 +127,7 @@ def march(f: Fingers, servo: Servo, c_r: float, c_l: float, dt: float, h: float,
     count = max(1, ceil(dt / h - 1e-9))
     for _ in range(count):
         if state[GRIPPED] == 0.0:
+            give_way(f, state[Q_R], state[Q_L], state)
             grip(f, state, read, work, rows[TRIAL])
         guided = f.contact == FRICTIONLESS and state[GRIPPED] > 0.0
         if guided:

@@ -1,8 +1,9 @@
 r"""A hand that moves slowly: the servos turn the joints, and the object is at rest between the tips at any moment.
 
-An object that is not gripped stays where it is, on a stand (ASSUMED) that nothing moves, and the tips press and roll on
-it there, one alone as on a wall. It is gripped as soon as both tips touch it and it finds a rest between them that
-carries it; where it no longer does, the stand has it again, where it is. An object that slides out of the grip, or
+An object that is not gripped is on a stand (ASSUMED), at the height and the angle at which it came there. It slides on it
+to either side without friction: one tip alone pushes it aside until it just touches. It is gripped as soon as both
+tips press on it and it finds a rest between them that carries it; where it no longer does, the stand has it again,
+where it is. An object that slides out of the grip, or
 along it until an end of its faces passes a tip, is no wall for the tips: neither touches it then until it has
 withdrawn, see `press`. Checked in tests/test_physics_hand_bench.py and tests/test_physics_hand_ends.py.
 """
@@ -36,6 +37,8 @@ from hil_sim.physics.hand.state import (
     X,
     Y,
 )
+
+LEANING = 0.1  # cos psi: below it the faces lie more on the stand than across it, and nothing is pushed aside
 
 
 @lean
@@ -99,8 +102,10 @@ def relax(f: Fingers, q_r: float, q_l: float, state: Array, read: Array, work: A
         if status in (OVER_R, OVER_L) or (status == SLIDES and f.mu < inf):
             state[PAST_R] = state[PAST_L] = 1.0
         state[GRIPPED] = 1.0 if status == HELD else 0.0
-    if state[GRIPPED] == 0.0 and lie(f, q_r, q_l, state):
-        state[GRIPPED] = 1.0 if hold(f, q_r, q_l, state, read, work) == HELD else 0.0
+    if state[GRIPPED] == 0.0:
+        give_way(f, q_r, q_l, state)
+        if lie(f, q_r, q_l, state):
+            state[GRIPPED] = 1.0 if hold(f, q_r, q_l, state, read, work) == HELD else 0.0
     press(f, state, read)
     return within(f, state, read, work)
 
@@ -170,6 +175,31 @@ def resistance(f: Fingers, state: Array, work: Array) -> float:
         work[OLD + i] = work[NEW + i] = state[i]
     balance(f, work)
     return stiffness(work)
+
+
+@lean
+def give_way(f: Fingers, q_r: float, q_l: float, state: Array) -> None:
+    r"""Let a tip that presses alone push the object on its stand aside, up to the middle where the other presses, too.
+
+    Parameters
+    ----------
+    f : Fingers
+        Numbers of the fingers [SI]
+    q_r : float
+        Angle of the right joint [rad]
+    q_l : float
+        Angle of the left joint [rad]
+    state : array (19,)
+        State of the hand, in which the object is moved along x [SI]
+    """
+    d_r = meet(f, 1.0, q_r, state[X], state[Y], state[PSI])[0] if state[PAST_R] == 0.0 else 0.0
+    d_l = meet(f, -1.0, q_l, state[X], state[Y], state[PSI])[0] if state[PAST_L] == 0.0 else 0.0
+    if (d_r > 0.0) == (d_l > 0.0) or cos(state[PSI]) < LEANING:
+        return
+    way = max(d_r, 0.0) - max(d_l, 0.0)
+    if d_r + d_l > 0.0 and state[PAST_R] == 0.0 and state[PAST_L] == 0.0:
+        way = 0.5 * (d_r - d_l)
+    state[X] -= way / cos(state[PSI])
 
 
 @lean
