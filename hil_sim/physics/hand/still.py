@@ -4,7 +4,8 @@ An object that is not gripped is on a stand (ASSUMED), at the height and the ang
 it to either side without friction: one tip alone pushes it aside until it just touches. It is gripped as soon as both
 tips press on it and it finds a rest between them that carries it; where it no longer does, the stand has it again,
 where it is. An object that slides out of the grip, or along it until an end of its faces passes a tip, is out of reach:
-neither tip touches it then until it has withdrawn, see `press`. Checked in tests/test_physics_hand_bench.py and tests/test_physics_hand_ends.py.
+neither tip touches it then until it has withdrawn, see `press`. Checked in tests/test_physics_hand_bench.py and
+tests/test_physics_hand_ends.py.
 """
 
 from math import ceil, cos, inf, sin
