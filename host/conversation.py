@@ -114,7 +114,7 @@ class Conversation:
                 self.link.write(out)
             data = self.link.read((wake_us if until_ms is None else min(wake_us, 1000 * until_ms)) / 1e6)
         except OSError as error:
-            raise LinkLost(f"the line broke ({error}); the robot switches everything off by itself") from error
+            raise LinkLost(f"the line ended: {error}; the robot switches everything off by itself") from error
         now_us = self.now_us()
         if data or self._break() is None:  # a broken line was not read: what it still holds may be old
             for record in self.session.receive(data, now_us):
