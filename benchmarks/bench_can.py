@@ -14,7 +14,7 @@ from random import Random
 
 import can
 
-from hil_sim.canmessages import frame_of
+from hil_sim.can.messages import frame_of
 from hil_sim.devices.canbits import bits_of
 from hil_sim.devices.canframe import INTERMISSION_BITS, TAIL_BITS
 from host.canbus import CanBus

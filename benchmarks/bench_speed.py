@@ -20,7 +20,7 @@ from host.run import Keeper, run
 ROOT = Path(__file__).parent.parent
 ROBOTS = ("circular", "sphere-a", "sphere-b")
 PLACES = (
-    ("body", ("hil_sim/plant.py", "hil_sim/sphere.py", "hil_sim/coilbody.py", "hil_sim/physics/")),
+    ("body", ("hil_sim/bodies/ring.py", "hil_sim/bodies/sphere.py", "hil_sim/bodies/coilbody.py", "hil_sim/physics/")),
     ("chips, wires, supply and clock", ("hil_sim/",)),
     ("firmware", ("firmware/",)),
     ("protocol, both ends", ("protocol/",)),

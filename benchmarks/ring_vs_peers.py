@@ -22,7 +22,7 @@ from hil_sim.physics.motion import begin, march
 from hil_sim.physics.ring import ring_of, round_pose
 from hil_sim.physics.state import method_of, motion_of
 from hil_sim.physics.tally import STEP
-from hil_sim.robotfile import load
+from hil_sim.robots.file import load
 
 N, R, MASS, EI = 32, 0.02, 1.6e-3, 0.92e-5
 RADIUS = R / 20  # of a round section with this EI that is as stiff in stretch as in the robot file

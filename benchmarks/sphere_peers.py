@@ -15,7 +15,7 @@ import numpy as np
 from benchmarks.chain_rest import Rest
 from benchmarks.sphere_chain import AXES, THREE, TOE, sphere_chain
 from benchmarks.sphere_flex import sphere_flex
-from hil_sim.robotfile import load
+from hil_sim.robots.file import load
 
 ROBOT = load("sphere-b")
 BODY, GROUND = replace(ROBOT.sphere, drag=0.0), ROBOT.ground

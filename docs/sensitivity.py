@@ -16,7 +16,7 @@ from typing import Any
 from urllib.parse import urlencode
 
 from hil_sim.link import open_link
-from hil_sim.robotfile import load as load_robot
+from hil_sim.robots.file import load as load_robot
 from host.errors import SoftrigError
 from host.gait.compiler import compile_script
 from host.gait.script import load as load_script

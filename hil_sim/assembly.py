@@ -6,6 +6,9 @@ from typing import Any
 
 from hil_sim.address import BODIES, Address, AddressError
 from hil_sim.bench import Bench, Parts, Plant
+from hil_sim.bodies.ring import RingPlant
+from hil_sim.bodies.sphere import SpherePlant
+from hil_sim.bodies.still import still
 from hil_sim.clock import Clock
 from hil_sim.devices.canwire import CanWire
 from hil_sim.devices.ntc import Ntc
@@ -14,13 +17,10 @@ from hil_sim.faults.file import plan
 from hil_sim.faults.happening import schedule
 from hil_sim.joints import angle_input
 from hil_sim.physics.hand.fingertip import HandError
-from hil_sim.plant import RingPlant
-from hil_sim.robotcheck import near
-from hil_sim.robotfile import PROFILES, RobotFile, RobotFileError, load
-from hil_sim.robotkeys import FINGERS, RING
+from hil_sim.robots.check import near
+from hil_sim.robots.file import PROFILES, RobotFile, RobotFileError, load
+from hil_sim.robots.keys import FINGERS, RING
 from hil_sim.soundness import CameApart
-from hil_sim.sphere import SpherePlant
-from hil_sim.still import still
 from hil_sim.supply import Battery
 from hil_sim.worlds import cpython, micropython, preset
 from hil_sim.worlds.image import Image
@@ -70,7 +70,7 @@ def plant_of(robot: RobotFile, seed: int, body: str = BODIES[0]) -> Plant:
     if robot.kind == FINGERS:
         if body != BODIES[0]:
             raise RobotFileError(f"body={body}: {robot.name} has no coils to heat while it does not move")
-        from hil_sim.fingers import FingersPlant  # noqa: PLC0415  (compiled physics that others do without)
+        from hil_sim.bodies.fingers import FingersPlant  # noqa: PLC0415  (compiled physics that others do without)
 
         return FingersPlant(robot)
     plant = RingPlant(robot, seed) if robot.kind == RING else SpherePlant(robot, seed)

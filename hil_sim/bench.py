@@ -9,7 +9,7 @@ coil orders. Where the pulses of a servo send it at a point of the grid, it goes
     bench.coil_gate("A"), bench.coil("A").on_us(bench.clock.now_us)
     bench.close()
 
-Several robots live in lock-step on one clock, and on one CAN bus, when each bench is given both (candesk.py).
+Several robots live in lock-step on one clock, and on one CAN bus, when each bench is given both (can/desk.py).
 """
 
 from collections.abc import Callable, Mapping, Sequence

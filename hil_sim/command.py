@@ -11,7 +11,7 @@ import click
 
 if TYPE_CHECKING:
     from hil_sim.address import Address
-    from hil_sim.candesk import CanDesk
+    from hil_sim.can.desk import CanDesk
 
 
 class NoRobot(click.ClickException):
@@ -96,7 +96,7 @@ def sim(
 @click.option("--json", "as_json", is_flag=True, help="One JSON object per line.")
 def robots(as_json: bool) -> None:
     """List the robots of the bench."""
-    from hil_sim.robotfile import RobotFileError, load, names  # noqa: PLC0415
+    from hil_sim.robots.file import RobotFileError, load, names  # noqa: PLC0415
 
     for name in names():
         try:
@@ -116,7 +116,7 @@ def _addresses(
 ) -> list[Address]:
     """Return the robots of a name; a single one that is on no bus stays without a number."""
     from hil_sim.address import AddressError, parse  # noqa: PLC0415
-    from hil_sim.candesk import addresses  # noqa: PLC0415
+    from hil_sim.can.desk import addresses  # noqa: PLC0415
 
     try:
         wanted = addresses(name) if on_can or "," in name.partition("?")[0] or "@" in name else [parse(name)]
@@ -157,7 +157,7 @@ def _listening(listen: str | None, address: Address) -> str:
 
 
 def _desk(wanted: list[Address]) -> CanDesk:
-    from hil_sim.candesk import CanDesk  # noqa: PLC0415
+    from hil_sim.can.desk import CanDesk  # noqa: PLC0415
 
     try:
         return CanDesk(wanted)

@@ -16,8 +16,8 @@ from types import TracebackType
 from typing import Any, Self
 
 from hil_sim.announcement import Announcement
-from hil_sim.candesk import CanDesk
-from hil_sim.canports import SlcanPort, SocketcandPort
+from hil_sim.can.desk import CanDesk
+from hil_sim.can.ports import SlcanPort, SocketcandPort
 from hil_sim.ports import End, Pace, Port, Pty, SerialEnd, Tcp, serve
 
 SOCKETCAND_PORT = 29_536  # socketcand's own

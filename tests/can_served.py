@@ -4,8 +4,8 @@ import threading
 from contextlib import contextmanager
 from dataclasses import replace
 
-from hil_sim.candesk import CanDesk
-from hil_sim.canhost import CanHost, Heard
+from hil_sim.can.desk import CanDesk
+from hil_sim.can.host import CanHost, Heard
 from hil_sim.devices.canframe import Frame
 from hil_sim.ports import Pace, serve
 

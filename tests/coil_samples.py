@@ -6,7 +6,7 @@ import numpy as np
 
 from hil_sim.physics import coil
 from hil_sim.physics.coilset import CoilNumbers, Coils, CoilState, coils_of, cold
-from hil_sim.robotfile import load
+from hil_sim.robots.file import load
 
 HT = {"A_s": 88.0, "A_f": 98.0, "M_s": 72.0, "M_f": 62.0}  # Flexinol HT, read
 

@@ -13,7 +13,7 @@ CORPUS = Path(__file__).parent / "corpus"  # a folder for each target
 ALL_S = 60
 INPUT_MAX = 2048
 STUCK_S = 20  # an input that takes so long is a finding
-WATCHED = ["protocol", "firmware", "host", "hil_sim.slcan", "hil_sim.socketcand", "hil_sim.canhost"]
+WATCHED = ["protocol", "firmware", "host", "hil_sim.can.slcan", "hil_sim.can.socketcand", "hil_sim.can.host"]
 ABSENT = """make fuzz needs atheris, and there is none here: it exists as a ready package for some versions of Python on
 Linux only. Try `.venv/bin/python -m pip install atheris`, or make setup PYTHON=python3.11. The corpus that `make test`
 replays needs none."""

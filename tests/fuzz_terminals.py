@@ -1,9 +1,9 @@
 """Fuzz targets: the text protocols of CAN adapters. Whatever is typed, an answer comes and the bus goes on."""
 
-from hil_sim.candesk import CanDesk
+from hil_sim.can.desk import CanDesk
+from hil_sim.can.slcan import LINE_MAX, Slcan
+from hil_sim.can.socketcand import PENDING_MAX, Socketcand
 from hil_sim.devices.canframe import Frame
-from hil_sim.slcan import LINE_MAX, Slcan
-from hil_sim.socketcand import PENDING_MAX, Socketcand
 from tests.fuzz_script import Script
 
 

@@ -11,7 +11,7 @@ from hil_sim.physics.net.pulls import FREE, SOFT
 from hil_sim.physics.net.rotation import turned
 from hil_sim.physics.net.state import motion_of
 from hil_sim.physics.terrain import terrain_of
-from hil_sim.robotfile import load
+from hil_sim.robots.file import load
 
 TOP, BOTTOM = (0, 0, 1), (0, 0, -1)
 SOFTNESS = 1e-6  # [N/m] of the spring between the poles: its pull does not depend on their distance

@@ -5,14 +5,14 @@ from functools import cache
 
 import numpy as np
 
+from hil_sim.bodies.ring import RingPlant
 from hil_sim.physics.bodies import GroundNumbers, RingNumbers
 from hil_sim.physics.motion import begin, march
 from hil_sim.physics.ring import ring_of, round_pose
 from hil_sim.physics.spokes import FREE, SOFT
 from hil_sim.physics.state import method_of, motion_of
 from hil_sim.physics.tally import STEP
-from hil_sim.plant import RingPlant
-from hil_sim.robotfile import load
+from hil_sim.robots.file import load
 
 GRID_US = 5000
 VOLT, SERIES_OHM = 2.0, 0.5

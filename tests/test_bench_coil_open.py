@@ -5,7 +5,7 @@ import pytest
 from hil_sim.address import parse
 from hil_sim.assembly import assemble
 from hil_sim.faults.happening import schedule
-from hil_sim.robotfile import RobotFileError
+from hil_sim.robots.file import RobotFileError
 from tests.bench_fakes import bench_of
 
 HEATING = "begin()\nbeat.toggle()\nset_output(0, 1000)\nset_output(1, 1000)\nwhile True: beat_for(1000)"

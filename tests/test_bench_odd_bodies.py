@@ -6,8 +6,8 @@ import signal
 import pytest
 
 from hil_sim import assembly
-from hil_sim.robotfile import RobotFileError, load
-from hil_sim.sphere import SpherePlant
+from hil_sim.bodies.sphere import SpherePlant
+from hil_sim.robots.file import RobotFileError, load
 from host.link import open_link
 
 

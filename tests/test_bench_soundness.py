@@ -4,7 +4,7 @@ import pytest
 
 from hil_sim.address import parse
 from hil_sim.assembly import assemble
-from hil_sim.robotfile import RobotFileError
+from hil_sim.robots.file import RobotFileError
 from hil_sim.soundness import CameApart, Soundness
 from host.errors import LinkLost
 from host.link import open_link

@@ -7,7 +7,7 @@ from hil_sim.address import AddressError, parse
 from hil_sim.assembly import assemble, plant_of
 from hil_sim.physics import coil
 from hil_sim.physics.coilset import coils_of, cold
-from hil_sim.robotfile import load, names
+from hil_sim.robots.file import load, names
 from tests.hil_rig import HilRig
 
 ADVANCE_US = 5_000

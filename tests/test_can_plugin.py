@@ -8,8 +8,8 @@ import can
 import pytest
 from can import BusState, CanInitializationError, CanOperationError, Message
 
-from hil_sim.candesk import addresses
-from hil_sim.canhost import (
+from hil_sim.can.desk import addresses
+from hil_sim.can.host import (
     ACTIVE,
     BUS_ERROR,
     BUS_OFF,

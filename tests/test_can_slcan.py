@@ -7,10 +7,10 @@ from can import Message
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil_sim.candesk import CanDesk
-from hil_sim.canports import SlcanPort
+from hil_sim.can.desk import CanDesk
+from hil_sim.can.ports import SlcanPort
+from hil_sim.can.slcan import LINE_MAX, Slcan
 from hil_sim.devices.canframe import Frame
-from hil_sim.slcan import LINE_MAX, Slcan
 from tests.can_served import PATIENCE_S, Echo, frames_heard, next_frame, serving
 
 

@@ -8,11 +8,11 @@ from can import Message
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hil_sim.candesk import CanDesk
-from hil_sim.canports import CLIENTS_MAX, SlcanPort, SocketcandPort
+from hil_sim.can.desk import CanDesk
+from hil_sim.can.ports import CLIENTS_MAX, SlcanPort, SocketcandPort
+from hil_sim.can.socketcand import HOLD_US, PENDING_MAX, Socketcand
 from hil_sim.devices.canframe import Frame
 from hil_sim.ports import PortError
-from hil_sim.socketcand import HOLD_US, PENDING_MAX, Socketcand
 from tests.can_served import PATIENCE_S, Echo, frames_heard, next_frame, serving
 
 OPEN = b"< open can0 >< rawmode >"

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from benchmarks.chain_rest import extrapolated, frequencies, pole_distance
-from hil_sim.robotfile import load
+from hil_sim.robots.file import load
 from tests.net_rest import net_pole_distance
 from tests.sphere_laws import pole_compliance, squash_frequency
 

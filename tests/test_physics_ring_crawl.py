@@ -5,7 +5,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from hil_sim.plant import RingPlant
+from hil_sim.bodies.ring import RingPlant
 from tests.ring_samples import CRAWL_EI, crawl, drive, duties, new_plant, robot, take_hold
 
 ARC_MM = pi * 20.0 / 4  # of one step

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from hil_sim.robotfile import load
-from hil_sim.sphere import SpherePlant
+from hil_sim.bodies.sphere import SpherePlant
+from hil_sim.robots.file import load
 
 BOOST_W = 1.1  # about what a coil takes from the supply at full duty
 HOLD_W = 0.36

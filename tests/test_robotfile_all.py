@@ -7,7 +7,7 @@ from math import pi
 import pytest
 
 from hil_sim.physics.coilset import coils_of
-from hil_sim.robotfile import FOLDER, PROFILES, load, names
+from hil_sim.robots.file import FOLDER, PROFILES, load, names
 
 SMALL_INT_MAX = (1 << 30) - 1  # of a board's MicroPython: beyond it a number takes memory
 NOMINAL_V = {"sphere-a": 7.2}  # of a battery, as its file says in words

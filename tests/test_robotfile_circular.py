@@ -2,7 +2,7 @@
 
 import pytest
 
-from hil_sim.robotfile import load, names
+from hil_sim.robots.file import load, names
 
 BODY = load("circular")
 

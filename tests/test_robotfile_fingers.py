@@ -9,8 +9,8 @@ import pytest
 from hil_sim.address import AddressError, parse
 from hil_sim.assembly import assemble
 from hil_sim.physics.hand.numbers import CONTACTS, MOTIONS, TIPS
-from hil_sim.robotfile import FOLDER, PROFILES, RobotFileError, load
-from hil_sim.robottexts import CHOICES
+from hil_sim.robots.file import FOLDER, PROFILES, RobotFileError, load
+from hil_sim.robots.texts import CHOICES
 
 ROBOTS = ("fingers", "fingers-experiment")
 TEXT = (FOLDER / "fingers.toml").read_text(encoding="utf-8")

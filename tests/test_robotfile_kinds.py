@@ -2,7 +2,7 @@
 
 import pytest
 
-from hil_sim.robotfile import FOLDER, RobotFileError, load
+from hil_sim.robots.file import FOLDER, RobotFileError, load
 
 FILES = {name: (FOLDER / f"{name}.toml").read_text(encoding="utf-8") for name in ("circular", "sphere-a", "sphere-b")}
 

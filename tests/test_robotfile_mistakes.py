@@ -6,7 +6,7 @@ import pytest
 
 from hil_sim.address import parse
 from hil_sim.assembly import assemble
-from hil_sim.robotfile import FOLDER, RobotFileError, load
+from hil_sim.robots.file import FOLDER, RobotFileError, load
 
 CIRCULAR = (FOLDER / "circular.toml").read_text(encoding="utf-8")
 

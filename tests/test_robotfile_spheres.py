@@ -4,9 +4,9 @@ from math import dist, radians, sqrt
 
 import pytest
 
-from hil_sim.directions import direction
+from hil_sim.bodies.directions import direction
 from hil_sim.physics.bodies import Attitude
-from hil_sim.robotfile import load
+from hil_sim.robots.file import load
 
 A, B = load("sphere-a"), load("sphere-b")
 SQUARE = ("B10m1", "B01m1", "Bm10m1", "B0m1m1")

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from hil_sim.robotfile import load
-from hil_sim.sphere import SpherePlant
+from hil_sim.bodies.sphere import SpherePlant
+from hil_sim.robots.file import load
 from host.errors import BadRequest
 from host.view import draw_film, draw_jump, draw_run
 from host.view.camera import distance, on_paper, plumb, silhouette

@@ -11,7 +11,7 @@ from hil_sim.assembly import parts_of, plant_of
 from hil_sim.bench import Bench
 from hil_sim.faults.happening import schedule
 from hil_sim.link import BOOTED_US, SimLink
-from hil_sim.robotfile import load
+from hil_sim.robots.file import load
 from hil_sim.worlds import micropython
 from hil_sim.worlds.image import Image
 from host.gait.compiler import compile_script

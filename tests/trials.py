@@ -18,7 +18,7 @@ from hil_sim.bench import Bench
 from hil_sim.faults.happening import Happening, schedule
 from hil_sim.faults.table import BATTERY, CAMERA, IMU, JOINT, LABEL, TABLE, Argument, Fault
 from hil_sim.link import BOOTED_US, SimLink, open_link
-from hil_sim.robotfile import RobotFile, load
+from hil_sim.robots.file import RobotFile, load
 from host.errors import SoftrigError
 from host.robot import Robot
 from tests.jobs import JOBS, cleared, job_of, scripts_of

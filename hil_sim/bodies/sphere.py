@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from hil_sim.coilbody import CoilBody
-from hil_sim.directions import direction
+from hil_sim.bodies.coilbody import CoilBody
+from hil_sim.bodies.directions import direction
 from hil_sim.physics import coil
 from hil_sim.physics.bodies import Attitude
 from hil_sim.physics.body import gravity, packed
@@ -33,7 +33,7 @@ from hil_sim.physics.net.state import motion_of
 from hil_sim.physics.state import method_of
 from hil_sim.physics.tally import APEX, CLEARANCE, CONTACTS, ELASTIC, PEAK_FORCE, PEAK_T, STEP, TIME, TURN
 from hil_sim.physics.terrain import profile, terrain_of
-from hil_sim.robotfile import RobotFile
+from hil_sim.robots.file import RobotFile
 
 SEEN = 5.0  # radii of ground on either side in a snapshot
 SLICE = 0.25  # [s]

@@ -12,8 +12,8 @@ understood is answered with BELL and changes nothing.
 
 from collections.abc import Callable
 
-from hil_sim.candesk import CanDesk
-from hil_sim.canhost import CanHost, Heard
+from hil_sim.can.desk import CanDesk
+from hil_sim.can.host import CanHost, Heard
 from hil_sim.devices.canerrors import WARNING
 from hil_sim.devices.canframe import DATA_MAX, Frame
 

@@ -9,8 +9,8 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from hil_sim.directions import direction
-from hil_sim.robotkeys import COILS, FINGERS, RING, SHELL, SPHERE
+from hil_sim.bodies.directions import direction
+from hil_sim.robots.keys import COILS, FINGERS, RING, SHELL, SPHERE
 
 CHIPS = (96, 97)  # PWM chips of the board
 PINS = (8, 9, 10)  # of the board, for servos

@@ -7,8 +7,8 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
-from hil_sim.robotkeys import BATTERY, BENCH, KEYS, KINDS, UNITS, Key, features_of, keys_of
-from hil_sim.robottexts import CHOICES, TEXTS, Sections, Text, mistakes_in, texts_of
+from hil_sim.robots.keys import BATTERY, BENCH, KEYS, KINDS, UNITS, Key, features_of, keys_of
+from hil_sim.robots.texts import CHOICES, TEXTS, Sections, Text, mistakes_in, texts_of
 
 STANDINGS = ("paper", "read", "measured", "derived", "assumed", "fitted")
 NAMED = {"read": "read where", "measured": "measured on what"}  # standings that need a source

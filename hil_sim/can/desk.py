@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 from hil_sim.address import NODE_MAX, Address, AddressError, parse
-from hil_sim.canhost import CanHost
+from hil_sim.can.host import CanHost
 from hil_sim.clock import Clock
 from hil_sim.devices.canwire import CanWire
 

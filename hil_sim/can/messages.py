@@ -2,7 +2,7 @@
 
 from can import Message
 
-from hil_sim.canhost import Heard, Trouble
+from hil_sim.can.host import Heard, Trouble
 from hil_sim.devices.canframe import Frame
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from hil_sim.physics.compiled import Array
 from hil_sim.physics.hand.fingertip import HandError
 from hil_sim.physics.hand.hand import Hand, advance, hand_of
-from hil_sim.robotfile import RobotFile
+from hil_sim.robots.file import RobotFile
 from hil_sim.soundness import OutOfModel
 
 SIDES = (1.0, -1.0)  # of the joints along x, the right one first

@@ -12,7 +12,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from hil_sim.coilbody import CoilBody
+from hil_sim.bodies.coilbody import CoilBody
 from hil_sim.physics import coil
 from hil_sim.physics.body import COIL_STEP
 from hil_sim.physics.coilset import Coils, CoilState

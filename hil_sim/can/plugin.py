@@ -6,8 +6,8 @@
         bus.benches[2].observe()
         other = can.Bus(interface="softrig", desk=bus.desk)
 
-A channel is described in candesk.py; an empty one is a bus without robots. Waiting in `recv` is what lets time pass,
-for the robots, too; `recv(0)` takes none. Error frames are those of canhost.py. The robots' controllers are classic:
+A channel is described in desk.py; an empty one is a bus without robots. Waiting in `recv` is what lets time pass,
+for the robots, too; `recv(0)` takes none. Error frames are those of host.py. The robots' controllers are classic:
 they destroy frames of CAN FD, which hosts with fd=True can exchange where there is no robot.
 """
 
@@ -21,12 +21,12 @@ from can.broadcastmanager import CyclicSendTaskABC
 from can.typechecking import AutoDetectedConfig, CanFilters
 
 from hil_sim.bench import Bench
-from hil_sim.candesk import CanDesk, addresses
-from hil_sim.canhost import CanHost
-from hil_sim.canmessages import frame_of, message_of
-from hil_sim.canperiodic import PeriodicTask
+from hil_sim.can.desk import CanDesk, addresses
+from hil_sim.can.host import CanHost
+from hil_sim.can.messages import frame_of, message_of
+from hil_sim.can.periodic import PeriodicTask
 from hil_sim.interrupts import interrupts_deferred
-from hil_sim.robotfile import names
+from hil_sim.robots.file import names
 
 PATIENCE_US = 1_000_000  # virtual time between two looks at the keyboard while nothing is due
 

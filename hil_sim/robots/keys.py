@@ -22,7 +22,7 @@ class Key:
 
     section: str
     key: str
-    target: str  # the group of numbers it belongs to, see robotfile.RobotFile
+    target: str  # the group of numbers it belongs to, see file.RobotFile
     field: str
     si: float  # one unit of the key in SI units
     least: float = 0.0

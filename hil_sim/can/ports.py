@@ -12,10 +12,10 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from hil_sim.candesk import CanDesk
+from hil_sim.can.desk import CanDesk
+from hil_sim.can.slcan import Slcan
+from hil_sim.can.socketcand import Socketcand
 from hil_sim.ports import CHUNK, LOOPBACK, Pty, listening
-from hil_sim.slcan import Slcan
-from hil_sim.socketcand import Socketcand
 
 WAITING_MAX = 65_536  # bytes that a reader may be behind
 CLIENTS_MAX = 16

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from hil_sim.coilbody import CoilBody
+from hil_sim.bodies.coilbody import CoilBody
 from hil_sim.physics import body, coil
 from hil_sim.physics.bodies import StartNumbers
 from hil_sim.physics.coilset import coils_of, cold
@@ -29,7 +29,7 @@ from hil_sim.physics.spokes import LENGTH, LENGTH_BEFORE, PULL
 from hil_sim.physics.state import method_of, motion_of
 from hil_sim.physics.tally import APEX, CLEARANCE, PEAK_FORCE, PEAK_T, STEP, TIME, TURN
 from hil_sim.physics.terrain import profile
-from hil_sim.robotfile import RobotFile
+from hil_sim.robots.file import RobotFile
 
 SEEN = 10.0  # radii of the ground on either side that a snapshot shows
 SETTLING_DRAG = 20.0  # [1/s] ASSUMED: numerical, the ring is at rest within its settle_s of 1 s

@@ -17,8 +17,8 @@ python-can holds each of its first answers against a whole segment of TCP: frame
 import re
 from collections.abc import Callable
 
-from hil_sim.candesk import CanDesk
-from hil_sim.canhost import CanHost, Heard, Trouble
+from hil_sim.can.desk import CanDesk
+from hil_sim.can.host import CanHost, Heard, Trouble
 from hil_sim.devices.canframe import DATA_MAX, Frame
 
 OK = b"< ok >"

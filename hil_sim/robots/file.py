@@ -19,11 +19,11 @@ from hil_sim.physics.battery import BatteryNumbers
 from hil_sim.physics.bodies import Attitude, GroundNumbers, RingNumbers, SphereNumbers, StartNumbers
 from hil_sim.physics.coilset import CoilNumbers
 from hil_sim.physics.hand.numbers import HandNumbers
-from hil_sim.robotcheck import Check, Entry, near
-from hil_sim.robotkeys import FINGERS, RING, SPHERE
+from hil_sim.robots.check import Check, Entry, near
+from hil_sim.robots.keys import FINGERS, RING, SPHERE
 
-FOLDER = Path(__file__).parent / "robots"
-PROFILES = Path(__file__).parents[1] / "firmware" / "robots"
+FOLDER = Path(__file__).parent
+PROFILES = Path(__file__).parents[2] / "firmware" / "robots"
 
 
 class RobotFileError(ValueError):

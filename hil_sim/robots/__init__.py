@@ -1,0 +1,1 @@
+"""The robot files, and how they are read and checked."""
