@@ -1,8 +1,11 @@
 """Firmware in which one line reads otherwise, to see whether a test would notice."""
 
+from collections.abc import Callable
+
 import pytest
 
 from hil_sim.worlds.image import Image
+from tests.hil_rig import HilRig
 
 
 def sabotage(patch: pytest.MonkeyPatch, file: str, line: str, instead: str) -> None:
@@ -17,3 +20,10 @@ def sabotage(patch: pytest.MonkeyPatch, file: str, line: str, instead: str) -> N
         return Image({**files, path: files[path].replace(line.encode(), instead.encode())})
 
     patch.setattr(Image, "installed", installed)
+
+
+def reproaches(address: str, deed: Callable[[HilRig], None]) -> str:
+    """Return which invariants did not hold while that was done to a robot, a sentence a line."""
+    rig = HilRig(address)
+    deed(rig)
+    return "\n".join(rig.bench.witness.broken())

@@ -11,6 +11,7 @@ from hil_sim.assembly import assemble
 from hil_sim.physics.hand.numbers import CONTACTS, MOTIONS, TIPS
 from hil_sim.robots.file import FOLDER, PROFILES, RobotFileError, load
 from hil_sim.robots.texts import CHOICES
+from tests.robot_mistakes import refusal, told_of
 
 ROBOTS = ("fingers", "fingers-experiment")
 TEXT = (FOLDER / "fingers.toml").read_text(encoding="utf-8")
@@ -36,23 +37,9 @@ MISTAKES = [
 ]
 
 
-def refusal(*arguments) -> str:
-    with pytest.raises(RobotFileError) as caught:
-        load(*arguments)
-    return str(caught.value)
-
-
 @pytest.mark.parametrize(("right", "wrong", "told"), MISTAKES)
 def test_a_mistake_is_told_with_its_line(right, wrong, told, tmp_path):
-    assert TEXT.count(right) == 1
-    file = tmp_path / "mine.toml"
-    file.write_text(TEXT.replace(right, wrong), encoding="utf-8")
-    line = TEXT[: TEXT.index(right)].count("\n") + 1
-
-    message = refusal(str(file))
-
-    assert message.startswith(f"{file}:{line}: ")
-    assert told in message.splitlines()[0]
+    assert told in told_of(TEXT, right, wrong, tmp_path).splitlines()[0]
 
 
 def test_its_sizes_are_in_si_units_and_its_joints_where_the_tips_touch():

@@ -7,6 +7,7 @@ import pytest
 from hil_sim.address import parse
 from hil_sim.assembly import assemble
 from hil_sim.robots.file import FOLDER, RobotFileError, load
+from tests.robot_mistakes import refusal, told_of
 
 CIRCULAR = (FOLDER / "circular.toml").read_text(encoding="utf-8")
 
@@ -34,22 +35,10 @@ MISTAKES = [
 ]
 
 
-def refusal(*arguments) -> str:
-    with pytest.raises(RobotFileError) as caught:
-        load(*arguments)
-    return str(caught.value)
-
-
 @pytest.mark.parametrize(("right", "wrong", "told"), MISTAKES)
 def test_a_mistake_is_told_with_its_line(right, wrong, told, tmp_path):
-    assert CIRCULAR.count(right) == 1
-    file = tmp_path / "mine.toml"
-    file.write_text(CIRCULAR.replace(right, wrong), encoding="utf-8")
-    line = CIRCULAR[: CIRCULAR.index(right)].count("\n") + 1
+    message = told_of(CIRCULAR, right, wrong, tmp_path)
 
-    message = refusal(str(file))
-
-    assert message.startswith(f"{file}:{line}: ")
     assert told in message
     assert len(message.splitlines()) == 1
 
