@@ -28,6 +28,7 @@ and the formula overstates the energy. Source: Hirai, section 3.2, first display
 (F3) are derived here. ASSUMED: k = 1. Checked against the integral in tests/test_physics_hand_fingertip.py.
 """
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -173,12 +174,12 @@ def pressed(d: Any, theta: Any, a: float, E: float, d_t: Any = 0.0, nail: bool =
             raise HandError(f"{name} = {values} is not a finite number")
     within(d, theta, a)
     values = (float(nail), E, k, d, theta, d_t)
-    return Tip(*springs.py_func(*values))  # type: ignore[attr-defined]  # the very source of the kernel, on arrays
+    return Tip(*_plain(springs)(*values))
 
 
 def within(d: Any, theta: Any, a: float, finger: str = "tip") -> None:
     """Raise ContactLost or OutOfRange for the first d [m] outside 0 .. a (1 - |sin theta|) of that finger."""
-    limit: Array = deepest.py_func(a, theta)  # type: ignore[attr-defined]
+    limit: Array = _plain(deepest)(a, theta)
     wrong = np.flatnonzero(~((d >= 0.0) & (d <= limit)))
     if wrong.size:
         shape = np.broadcast_shapes(np.shape(d), np.shape(theta))
@@ -200,3 +201,9 @@ def refusal(finger: str, d: float, theta: float, limit: float) -> HandError:
         f" at most a (1 - |sin theta|) = {1e3 * limit:.4f} mm: the tip is pressed to the edge of its plate;"
         " press or tilt it less"
     )
+
+
+def _plain(kernel: Any) -> Callable[..., Any]:
+    """Return the very source of a kernel, which works on whole arrays, too."""
+    source: Callable[..., Any] = kernel.py_func
+    return source
