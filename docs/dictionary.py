@@ -7,7 +7,7 @@ for each name in it and each code.
     20 fire coils:I duty_permille:H[0..1000] hold_ms:H
     STATES boot idle armed running tripped
     var 7 current_ma:H
-    var 26 joint_centideg:h+
+    var 26 joint_centi:h+
     CODES =1 R01 R02 ... =101 F01
 """
 

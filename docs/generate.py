@@ -123,7 +123,7 @@ def limits_page() -> str:
 def wired(row: dict[str, Any]) -> str:
     """Return what drives a channel of a profile."""
     if row["kind"] == "servo":
-        return f"GP{row['pin']}; current on AIN{row['current']}, angle on AIN{row['angle']}"
+        return f"GP{row['pin']}; current on AIN{row['current']}, position on AIN{row['position']}"
     return f"0x{row['chip']:02X}, output {row['output']}"
 
 

@@ -73,7 +73,7 @@ def wiring(profile: dict) -> str:
 
 def _net(row: dict) -> str:
     if row["kind"] == "servo":
-        return f"{NETS[row['pin']]}, current CH{row['current']}, angle CH{row['angle']}"
+        return f"{NETS[row['pin']]}, current CH{row['current']}, position CH{row['position']}"
     return f"G{(row['chip'] - 0x60) * 16 + row['output']}"
 
 

@@ -193,7 +193,7 @@ class Commands:
 
     def _move(self, order, seq: int) -> None:
         limbs = self._ready_limbs()
-        limbs.move(order.joints, order.target_centideg, order.over_ms, order.hold_ms, self._core.now_ms)
+        limbs.move(order.joints, order.target_centi, order.over_ms, order.hold_ms, self._core.now_ms)
 
     def _orient(self, order, seq: int) -> None:
         self._ready_limbs().turn(order.target_centideg, order.time_ms, order.hold_ms, self._core.now_ms)

@@ -1,4 +1,4 @@
-"""The only code that drives a joint: along a straight line to its angle, there for as long as was ordered, then limp.
+"""The only code that drives a joint: along a straight line to its target, there for as long as was ordered, then limp.
 
 Whatever is asked, no joint is told an angle outside its range, faster than its slew limit, or longer than its order.
 Orders are checked whole before any of it is taken. A limp joint sets out from where it is measured and takes the time
@@ -12,7 +12,7 @@ from protocol import codes
 from protocol.variables import UNKNOWN_ANGLE
 
 LIMP = UNKNOWN_ANGLE
-LONG_MS = 29_000  # a longer way is reckoned in coarser time: 36000 centidegrees times more would be beyond 2**30
+LONG_MS = 29_000  # a longer way is reckoned in coarser time: 36000 hundredths times more would be beyond 2**30
 
 
 class Joints:
@@ -24,43 +24,43 @@ class Joints:
         self.first = first
         self.mask = (1 << first + count) - (1 << first)
         self.on_mask = 0  # channels of the joints that are driven
-        self.commanded_centideg = array("h", [LIMP] * count)
-        self.measured_centideg = array("h", [0] * count)  # see jointsense.py
+        self.commanded_centi = array("h", [LIMP] * count)
+        self.measured_centi = array("h", [0] * count)  # see jointsense.py
         self.current_ma = array("H", [0] * count)
         self._servos = servos
         self._limits = limits
         self._written = array("h", [LIMP] * count)
-        self._start_centideg = array("h", [0] * count)
-        self._target_centideg = array("h", [0] * count)
+        self._start_centi = array("h", [0] * count)
+        self._target_centi = array("h", [0] * count)
         self._begin_ms = array("i", [0] * count)
         self._over_ms = array("i", [0] * count)
         self._end_ms = array("i", [0] * count)
 
-    def move(self, mask: int, target_centideg: int, over_ms: int, hold_ms: int, now_ms: int) -> None:
+    def move(self, mask: int, target_centi: int, over_ms: int, hold_ms: int, now_ms: int) -> None:
         """Turn these joints to an angle within that time and hold it for so long, or raise Refused."""
-        self._check(mask, target_centideg, over_ms, hold_ms)
+        self._check(mask, target_centi, over_ms, hold_ms)
         for joint in range(self.count):
             if mask >> self.first + joint & 1:
-                self._begin(joint, target_centideg, over_ms, hold_ms, now_ms)
+                self._begin(joint, target_centi, over_ms, hold_ms, now_ms)
 
-    def steer(self, joint: int, centideg: int, end_ms: int) -> None:
+    def steer(self, joint: int, centi: int, end_ms: int) -> None:
         """Have a joint that is driven stand at an angle from now on, until that time; the caller keeps it in range."""
-        self._start_centideg[joint] = self._target_centideg[joint] = centideg
+        self._start_centi[joint] = self._target_centi[joint] = centi
         self._over_ms[joint] = 0
         self._end_ms[joint] = end_ms
-        self.commanded_centideg[joint] = centideg
+        self.commanded_centi[joint] = centi
 
     def stand(self) -> None:
         """Have every joint that is driven stand where it is told to be now, up to the end of its order."""
         for joint in range(self.count):
-            if self.commanded_centideg[joint] != LIMP:
-                self.steer(joint, self.commanded_centideg[joint], self._end_ms[joint])
+            if self.commanded_centi[joint] != LIMP:
+                self.steer(joint, self.commanded_centi[joint], self._end_ms[joint])
 
     def off(self, mask: int) -> None:
         """Let these joints go limp."""
         for joint in range(self.count):
             if mask >> self.first + joint & 1:
-                self.commanded_centideg[joint] = LIMP
+                self.commanded_centi[joint] = LIMP
         self.on_mask &= ~mask
         self.write()
 
@@ -71,76 +71,76 @@ class Joints:
     def update(self, now_ms: int) -> None:
         """Move on along each order's line; end what has run out."""
         for joint in range(self.count):
-            if self.commanded_centideg[joint] != LIMP:
+            if self.commanded_centi[joint] != LIMP:
                 self._follow(joint, now_ms)
 
     def write(self) -> None:
         """Bring the servos' pulses in line with the orders; a joint that is limp has none."""
         for joint in range(self.count):
-            centideg = self.commanded_centideg[joint]
-            if centideg != self._written[joint]:
-                self._written[joint] = centideg
-                if centideg == LIMP:
+            centi = self.commanded_centi[joint]
+            if centi != self._written[joint]:
+                self._written[joint] = centi
+                if centi == LIMP:
                     self._servos[joint].off()
                 else:
-                    self._servos[joint].pulse(self._limits.width_ns(centideg))
+                    self._servos[joint].pulse(self._limits.width_ns(centi))
 
     def moving(self, now_ms: int) -> bool:
         """Return whether a joint is still on its way."""
         for joint in range(self.count):
-            if self.commanded_centideg[joint] != LIMP and now_ms - self._begin_ms[joint] < self._over_ms[joint]:
+            if self.commanded_centi[joint] != LIMP and now_ms - self._begin_ms[joint] < self._over_ms[joint]:
                 return True
         return False
 
-    def _check(self, mask: int, target_centideg: int, over_ms: int, hold_ms: int) -> None:
+    def _check(self, mask: int, target_centi: int, over_ms: int, hold_ms: int) -> None:
         limits = self._limits
         if not mask or mask & ~self.mask:
             raise Refused(codes.UNKNOWN_CHANNEL, 255, mask, self.mask)
         channel = self.first
         while not mask >> channel & 1:
             channel += 1
-        if not limits.least_centideg <= target_centideg <= limits.most_centideg:
-            limit = limits.least_centideg if target_centideg < limits.least_centideg else limits.most_centideg
-            raise Refused(codes.RANGE_LIMIT, channel, target_centideg, limit)
+        if not limits.least_centi <= target_centi <= limits.most_centi:
+            limit = limits.least_centi if target_centi < limits.least_centi else limits.most_centi
+            raise Refused(codes.RANGE_LIMIT, channel, target_centi, limit)
         if hold_ms > limits.hold_max_ms:
             raise Refused(codes.HOLD_LIMIT, channel, hold_ms, limits.hold_max_ms)
         for joint in range(self.count):
-            if mask >> self.first + joint & 1 and self.commanded_centideg[joint] != LIMP:
-                self._check_speed(joint, target_centideg, over_ms)
+            if mask >> self.first + joint & 1 and self.commanded_centi[joint] != LIMP:
+                self._check_speed(joint, target_centi, over_ms)
 
-    def _check_speed(self, joint: int, target_centideg: int, over_ms: int) -> None:
-        if self._least_ms(self.commanded_centideg[joint], target_centideg) > over_ms:
-            speed = abs(target_centideg - self.commanded_centideg[joint]) * 1000 // max(1, over_ms)
-            raise Refused(codes.SLEW_LIMIT, self.first + joint, speed, self._limits.slew_centideg_per_s)
+    def _check_speed(self, joint: int, target_centi: int, over_ms: int) -> None:
+        if self._least_ms(self.commanded_centi[joint], target_centi) > over_ms:
+            speed = abs(target_centi - self.commanded_centi[joint]) * 1000 // max(1, over_ms)
+            raise Refused(codes.SLEW_LIMIT, self.first + joint, speed, self._limits.slew_centi_per_s)
 
-    def _least_ms(self, start_centideg: int, target_centideg: int) -> int:
+    def _least_ms(self, start_centi: int, target_centi: int) -> int:
         """Return how long a way takes at the slew limit."""
-        slew = self._limits.slew_centideg_per_s
-        return (abs(target_centideg - start_centideg) * 1000 + slew - 1) // slew
+        slew = self._limits.slew_centi_per_s
+        return (abs(target_centi - start_centi) * 1000 + slew - 1) // slew
 
-    def _begin(self, joint: int, target_centideg: int, over_ms: int, hold_ms: int, now_ms: int) -> None:
-        start_centideg = self.commanded_centideg[joint]
-        if start_centideg == LIMP:
+    def _begin(self, joint: int, target_centi: int, over_ms: int, hold_ms: int, now_ms: int) -> None:
+        start_centi = self.commanded_centi[joint]
+        if start_centi == LIMP:
             limits = self._limits
-            start_centideg = min(max(self.measured_centideg[joint], limits.least_centideg), limits.most_centideg)
-            over_ms = max(over_ms, self._least_ms(start_centideg, target_centideg))
-        self._start_centideg[joint] = start_centideg
-        self._target_centideg[joint] = target_centideg
+            start_centi = min(max(self.measured_centi[joint], limits.least_centi), limits.most_centi)
+            over_ms = max(over_ms, self._least_ms(start_centi, target_centi))
+        self._start_centi[joint] = start_centi
+        self._target_centi[joint] = target_centi
         self._begin_ms[joint] = now_ms
         self._over_ms[joint] = over_ms
         self._end_ms[joint] = now_ms + over_ms + hold_ms
-        self.commanded_centideg[joint] = start_centideg
+        self.commanded_centi[joint] = start_centi
         self.on_mask |= 1 << self.first + joint
 
     def _follow(self, joint: int, now_ms: int) -> None:
         if now_ms - self._end_ms[joint] >= 0:
-            self.commanded_centideg[joint] = LIMP
+            self.commanded_centi[joint] = LIMP
             self.on_mask &= ~(1 << self.first + joint)
             return
         passed_ms, over_ms = now_ms - self._begin_ms[joint], self._over_ms[joint]
-        start_centideg, target_centideg = self._start_centideg[joint], self._target_centideg[joint]
+        start_centi, target_centi = self._start_centi[joint], self._target_centi[joint]
         if passed_ms < over_ms:
             while over_ms > LONG_MS:
                 passed_ms, over_ms = passed_ms >> 1, over_ms >> 1
-            target_centideg = start_centideg + (target_centideg - start_centideg) * passed_ms // over_ms
-        self.commanded_centideg[joint] = target_centideg
+            target_centi = start_centi + (target_centi - start_centi) * passed_ms // over_ms
+        self.commanded_centi[joint] = target_centi

@@ -40,14 +40,14 @@ class JointSense:
         joints.current_ma[joint] = current_ma
         if current_ma < limits.stall_ma or not is_on:
             self._strained_ms[joint] = now_ms
-        counts = self._converter.counts(row.angle)
+        counts = self._converter.counts(row.position)
         self._counts[joint] = counts
         if limits.low_counts - BESIDE_COUNTS <= counts <= limits.high_counts + BESIDE_COUNTS:
             self._broken[joint] = 0
-            joints.measured_centideg[joint] = limits.angle_centideg(counts)
+            joints.measured_centi[joint] = limits.position_centi(counts)
         elif self._broken[joint] < BROKEN_READS:
             self._broken[joint] += 1
-        if not is_on or abs(self._off_centideg(joint)) <= limits.astray_centideg:
+        if not is_on or abs(self._off_centi(joint)) <= limits.astray_centi:
             self._followed_ms[joint] = now_ms
 
     def check(self, now_ms: int) -> int:
@@ -60,7 +60,7 @@ class JointSense:
             if now_ms - self._strained_ms[joint] > self._limits.stall_ms:
                 return self._fault(codes.STALL, joint, joints.current_ma[joint])
             if now_ms - self._followed_ms[joint] > self._limits.astray_ms:
-                return self._fault(codes.ASTRAY, joint, self._off_centideg(joint))
+                return self._fault(codes.ASTRAY, joint, self._off_centi(joint))
         return 0
 
     def broken(self) -> int:
@@ -74,9 +74,9 @@ class JointSense:
         """Return the last reading of a joint's potentiometer."""
         return self._counts[channel - self._joints.first]
 
-    def _off_centideg(self, joint: int) -> int:
+    def _off_centi(self, joint: int) -> int:
         """Return how far a joint that is driven stands from where it was told."""
-        return self._joints.measured_centideg[joint] - self._joints.commanded_centideg[joint]
+        return self._joints.measured_centi[joint] - self._joints.commanded_centi[joint]
 
     def _fault(self, code: int, joint: int, value: int) -> int:
         self.channel = self._joints.first + joint

@@ -50,10 +50,10 @@ class Limbs:
             self._driven_ms = now_ms
         return self.sense.check(now_ms) if powered else 0
 
-    def move(self, mask: int, target_centideg: int, over_ms: int, hold_ms: int, now_ms: int) -> None:
+    def move(self, mask: int, target_centi: int, over_ms: int, hold_ms: int, now_ms: int) -> None:
         """Move joints as ordered, or raise Refused; a loop that held them ends."""
         now_ms = self._reached(now_ms)
-        self.joints.move(mask, target_centideg, over_ms, hold_ms, now_ms)
+        self.joints.move(mask, target_centi, over_ms, hold_ms, now_ms)
         if self.orient and mask & self.orient.mask:
             self.orient.cancel()
 
@@ -70,9 +70,9 @@ class Limbs:
             self.orient.cancel()
         self.joints.stand()
 
-    def play_move(self, mask: int, target_centideg: int, over_ms: int, now_ms: int) -> None:
+    def play_move(self, mask: int, target_centi: int, over_ms: int, now_ms: int) -> None:
         """Move joints as a program orders: they hold as long as any order may."""
-        self.move(mask, target_centideg, over_ms, self._hold_max_ms, now_ms)
+        self.move(mask, target_centi, over_ms, self._hold_max_ms, now_ms)
 
     def play_turn(self, target_centideg: int, time_ms: int, now_ms: int) -> None:
         """Regulate as a program orders."""

@@ -38,7 +38,7 @@ class Orient:
 
     def begin(self, target_centideg: int, time_ms: int, hold_ms: int, now_ms: int) -> None:
         """Regulate to that angle for so long, then hold; or raise Refused."""
-        joints, commanded = self._joints, self._joints.commanded_centideg
+        joints, commanded = self._joints, self._joints.commanded_centi
         if not self._camera.known:
             raise Refused(codes.NO_CAMERA)
         if hold_ms > self._servo.hold_max_ms:
@@ -84,13 +84,13 @@ class Orient:
         error = self._target_centideg - self._camera.centideg
         error = max(-ERROR_MAX_CENTIDEG, min(ERROR_MAX_CENTIDEG, error))
         change = error * passed_ms // 10 * self._gain // 100
-        most = self._servo.slew_centideg_per_s * min(passed_ms, FRAME_MS)
+        most = self._servo.slew_centi_per_s * min(passed_ms, FRAME_MS)
         self._fine -= max(-most, min(most, change))
 
     def _steer(self) -> None:
         servo, grip, reach = self._servo, self._grip_centideg, self._swing_max
-        most = min(reach, servo.most_centideg - abs(grip)) * FINE
-        least = max(-reach, servo.least_centideg + abs(grip)) * FINE
+        most = min(reach, servo.most_centi - abs(grip)) * FINE
+        least = max(-reach, servo.least_centi + abs(grip)) * FINE
         self._fine = max(least, min(most, self._fine))
         swing = self._fine // FINE
         self._joints.steer(0, swing + grip, self._end_ms)

@@ -216,7 +216,7 @@ class Player:
         elif source in program.OF_JOINTS:
             joints = self._limbs.joints
             self._masks[place] >>= joints.first
-            self._readings[place] = joints.measured_centideg if source == program.ANGLE else joints.current_ma
+            self._readings[place] = joints.measured_centi if source == program.POSITION else joints.current_ma
 
     def _keep_readings(self, place: int, readings: array, unit: int) -> None:
         """Have a condition look at these; what is a fraction of a unit above its value does not count."""

@@ -7,9 +7,9 @@ import json
 from binascii import crc32
 
 GAIN_MAX_PERMILLE_PER_S = 30_000  # beyond it the loop's integers would not stay small
-SPAN_MAX_CENTIDEG = 36_000
-SPREAD_MAX = (1 << 30) // 10  # centidegrees of a span times microseconds between its pulses: their product stays small
-SLEW_MAX_CENTIDEG_PER_S = 1_000_000
+SPAN_MAX_CENTI = 36_000
+SPREAD_MAX = (1 << 30) // 10  # hundredths of a span times microseconds between its pulses: their product stays small
+SLEW_MAX_CENTI_PER_S = 1_000_000
 HOLD_MAX_MS = 1 << 24
 UA_PER_COUNT_MAX = 16_000  # 4095 counts are told as 65535 mA at most
 COUNTS_MAX = 4095
@@ -32,13 +32,13 @@ class Coil:
 
 
 class Joint:
-    """One joint: its label, the pin of its servo's pulses, and the converter's inputs for its current and angle."""
+    """One joint: its label, the pin of its servo's pulses, and the converter's inputs for its current and position."""
 
     def __init__(self, row: dict) -> None:
         self.label = row["label"]
         self.pin = row["pin"]
         self.current = row["current"]
-        self.angle = row["angle"]
+        self.position = row["position"]
 
 
 class Profile:
@@ -99,13 +99,13 @@ class ServoLimits:
     """What a joint may be told, and how its servo and the converter read."""
 
     def __init__(self, data: dict) -> None:
-        self.least_centideg = data["least_centideg"]
-        self.most_centideg = data["most_centideg"]
-        self.slew_centideg_per_s = data["slew_centideg_per_s"]
+        self.least_centi = data["least_centi"]
+        self.most_centi = data["most_centi"]
+        self.slew_centi_per_s = data["slew_centi_per_s"]
         self.hold_max_ms = data["hold_max_ms"]
         self.stall_ma = data["stall_ma"]
         self.stall_ms = data["stall_ms"]
-        self.astray_centideg = data["astray_centideg"]
+        self.astray_centi = data["astray_centi"]
         self.astray_ms = data["astray_ms"]
         self.pulse_hz = data["pulse_hz"]
         self.ua_per_count = data["ua_per_count"]
@@ -113,31 +113,31 @@ class ServoLimits:
         self.high_counts = data["high_counts"]
         self._low_ns = data["low_us"] * 1000
         self._width_us = data["high_us"] - data["low_us"]
-        self._span_centideg = data["span_centideg"]
+        self._span_centi = data["span_centi"]
         self._check(data)
 
-    def width_ns(self, centideg: int) -> int:
+    def width_ns(self, centi: int) -> int:
         """Return the width of the pulse that sends a servo to an angle; its span lies half on either side of 0."""
-        from_low = centideg + self._span_centideg // 2
-        return self._low_ns + from_low * self._width_us * 10 // (self._span_centideg // 100)
+        from_low = centi + self._span_centi // 2
+        return self._low_ns + from_low * self._width_us * 10 // (self._span_centi // 100)
 
-    def angle_centideg(self, counts: int) -> int:
+    def position_centi(self, counts: int) -> int:
         """Return the angle at which the potentiometer reads so many counts."""
         way = self.high_counts - self.low_counts
-        return (counts - self.low_counts) * self._span_centideg // way - self._span_centideg // 2
+        return (counts - self.low_counts) * self._span_centi // way - self._span_centi // 2
 
     def _check(self, data: dict) -> None:
         """Raise ValueError where a number on the way would be too large for its place, or a pulse no pulse."""
-        half_centideg = self._span_centideg // 2
+        half_centi = self._span_centi // 2
         for name, fits in (
-            ("span_centideg", 0 < self._span_centideg <= SPAN_MAX_CENTIDEG and self._span_centideg % 100 == 0),
-            ("least_centideg", -half_centideg <= self.least_centideg < self.most_centideg),
-            ("most_centideg", self.most_centideg <= half_centideg),
-            ("slew_centideg_per_s", 0 < self.slew_centideg_per_s <= SLEW_MAX_CENTIDEG_PER_S),
+            ("span_centi", 0 < self._span_centi <= SPAN_MAX_CENTI and self._span_centi % 100 == 0),
+            ("least_centi", -half_centi <= self.least_centi < self.most_centi),
+            ("most_centi", self.most_centi <= half_centi),
+            ("slew_centi_per_s", 0 < self.slew_centi_per_s <= SLEW_MAX_CENTI_PER_S),
             ("hold_max_ms", 0 < self.hold_max_ms <= HOLD_MAX_MS),
             ("pulse_hz", self.pulse_hz > 0),
             ("high_us", 0 < data["low_us"] < data["high_us"] and data["high_us"] * self.pulse_hz < 1_000_000),
-            ("high_us", self._span_centideg * self._width_us < SPREAD_MAX),
+            ("high_us", self._span_centi * self._width_us < SPREAD_MAX),
             ("ua_per_count", 0 < self.ua_per_count <= UA_PER_COUNT_MAX),
             ("high_counts", 0 <= self.low_counts <= self.high_counts - WAY_MIN_COUNTS <= COUNTS_MAX - WAY_MIN_COUNTS),
         ):

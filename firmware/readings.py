@@ -45,7 +45,7 @@ class Readings:
 
     def _of_joints(self) -> bytes:
         joints = self._limbs.joints
-        told = bytes(joints.measured_centideg) + bytes(joints.commanded_centideg) + bytes(joints.current_ma)
+        told = bytes(joints.measured_centi) + bytes(joints.commanded_centi) + bytes(joints.current_ma)
         camera = self._limbs.camera
         return told + struct.pack("<h", camera.object_centideg()) if camera else told
 
@@ -134,11 +134,11 @@ class Readings:
 
     def _joint_angles(self, values: list) -> None:
         if self._limbs:
-            values.extend(self._limbs.joints.measured_centideg)
+            values.extend(self._limbs.joints.measured_centi)
 
     def _commanded(self, values: list) -> None:
         if self._limbs:
-            values.extend(self._limbs.joints.commanded_centideg)
+            values.extend(self._limbs.joints.commanded_centi)
 
     def _joint_currents(self, values: list) -> None:
         if self._limbs:

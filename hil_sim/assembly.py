@@ -121,8 +121,8 @@ def _agree(robot: RobotFile, profile: bytes) -> None:
 
 
 def _place(row: dict[str, Any]) -> tuple[Any, ...]:
-    """Return chip and output of a coil of the profile, or the pin of a servo and the inputs of current and angle."""
-    return (row["pin"], row["current"], row["angle"]) if row["kind"] == "servo" else (row["chip"], row["output"])
+    """Return chip and output of a coil of the profile, or the pin of a servo and the inputs of current and position."""
+    return (row["pin"], row["current"], row["position"]) if row["kind"] == "servo" else (row["chip"], row["output"])
 
 
 def parts_of(robot: RobotFile) -> Parts:

@@ -25,7 +25,7 @@ class Coil:
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """A channel that turns a joint: the pin of its pulses, and the converter's inputs of its current and its angle."""
+    """A channel that turns a joint: its pin, and the converter's inputs of its current and position."""
 
     KIND: ClassVar = "servo"
 
@@ -33,7 +33,7 @@ class Joint:
     kind: str
     pin: int
     current: int
-    angle: int
+    position: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,18 +62,19 @@ class CoilLimits:
 class ServoLimits:
     """What the firmware allows each joint, and how its pulses and readings are to be understood."""
 
-    least_centideg: int
-    most_centideg: int
-    slew_centideg_per_s: int
+    unit: str
+    least_centi: int
+    most_centi: int
+    slew_centi_per_s: int
     hold_max_ms: int
     stall_ma: int
     stall_ms: int
-    astray_centideg: int
+    astray_centi: int
     astray_ms: int
     pulse_hz: int
     low_us: int
     high_us: int
-    span_centideg: int
+    span_centi: int
     ua_per_count: int
     low_counts: int
     high_counts: int

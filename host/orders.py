@@ -69,7 +69,7 @@ class Orders:
         _within("fire", codes.HOLD_LIMIT, hold_ms, limits.hold_max_ms)
         self.talk.order(messages.FIRE, coils=mask, duty_permille=duty_permille, hold_ms=hold_ms)
 
-    def move(self, joints: Iterable[str], target_centideg: int, over_ms: int, hold_ms: int) -> None:
+    def move(self, joints: Iterable[str], target_centi: int, over_ms: int, hold_ms: int) -> None:
         """Turn these joints or groups on a straight line, then hold them for that long; then they go limp.
 
         A joint that is limp sets out from where it is and may take longer: it never turns faster than it may.
@@ -77,10 +77,10 @@ class Orders:
         mask, limits = self.profile.joint_mask(joints), self.profile.servo
         _writable("over", over_ms)
         _within("move", codes.HOLD_LIMIT, hold_ms, limits.hold_max_ms)
-        if abs(target_centideg) > ANGLE_MAX_CENTIDEG:
-            limit = limits.least_centideg if target_centideg < 0 else limits.most_centideg
-            raise Refused("move", codes.RANGE_LIMIT, target_centideg, limit)
-        self.talk.order(messages.MOVE, joints=mask, target_centideg=target_centideg, over_ms=over_ms, hold_ms=hold_ms)
+        if abs(target_centi) > ANGLE_MAX_CENTIDEG:
+            limit = limits.least_centi if target_centi < 0 else limits.most_centi
+            raise Refused("move", codes.RANGE_LIMIT, target_centi, limit)
+        self.talk.order(messages.MOVE, joints=mask, target_centi=target_centi, over_ms=over_ms, hold_ms=hold_ms)
 
     def orient(self, target_centideg: int, time_ms: int, hold_ms: int) -> None:
         """Turn the object that both joints hold to an angle, regulated for `time_ms`; then hold it for that long.

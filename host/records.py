@@ -116,8 +116,8 @@ def telemetry_of(values: list[Any], parts: Parts, host_ms: int, now_ms: int) -> 
         told["duty_permille"],
         tuple([decidegc / 10 for decidegc in told["coil_decidegc"]]),
         **_attitude(told["roll_decideg"], told["pitch_decideg"], told["down"], parts.channels),
-        joint_deg=tuple([centideg / 100 for centideg in told["joint_centideg"]]),
-        commanded_deg=tuple([_angle_deg(centideg) for centideg in told["commanded_centideg"]]),
+        joint_deg=tuple([centideg / 100 for centideg in told["joint_centi"]]),
+        commanded_deg=tuple([_angle_deg(centideg) for centideg in told["commanded_centi"]]),
         joint_ma=told["joint_ma"],
         object_deg=_angle_deg(*told["object_centideg"]),
     )

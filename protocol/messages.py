@@ -272,7 +272,7 @@ CANCEL = Message(0x23, "cancel")  # Ends the running program: all coils off, joi
 MOVE = Message(
     0x24, "move",  # Turn joints to an angle on a straight line, then hold them there; the order carries its own end.
     Field("joints", "I"),  # Bit mask of channels in the order of the profile.
-    Field("target_centideg", "h"),  # Where to.
+    Field("target_centi", "h"),  # Where to.
     Field("over_ms", "H"),  # How long they are to take.
     Field("hold_ms", "H"),  # Limp again after this long there unless driven anew.
 )  # fmt: skip

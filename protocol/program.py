@@ -24,9 +24,9 @@ ARGUMENTS = {
 }  # fmt: skip
 
 TEMPERATURE, CURRENT, VOLTAGE, BOARD, HEAT, ROLL, PITCH, DOWN = 1, 2, 3, 4, 5, 6, 7, 8  # sources of a condition
-ANGLE, LOAD, ORIENTATION = 9, 10, 11
+POSITION, LOAD, ORIENTATION = 9, 10, 11
 OF_COILS = (TEMPERATURE, HEAT, DOWN)  # those that ask about the coils of the mask
-OF_JOINTS = (ANGLE, LOAD)  # and about the joints of the mask
+OF_JOINTS = (POSITION, LOAD)  # and about the joints of the mask
 OF_ATTITUDE = (ROLL, PITCH, DOWN)
 ANY, ALL, CHOSEN = 0, 1, 2  # CHOSEN: the mask is the number of the place that holds an aimed coil
 BELOW, ABOVE = 0, 1
@@ -110,9 +110,9 @@ def aimed(place: int, duty_permille: int, time_ms: int, cutoff_decidegc: int = 0
     return _op(AIMED, (place, 1), (duty_permille, 2), (time_ms, 2), (cutoff_decidegc, 2), (ramp_ms, 2))
 
 
-def move(mask: int, target_centideg: int, over_ms: int) -> bytes:
+def move(mask: int, target_centi: int, over_ms: int) -> bytes:
     """Turn these joints to an angle within that time and hold them there; does not wait."""
-    return _op(MOVE, (mask, 4), (target_centideg & 0xFFFF, 2), (over_ms, 2))
+    return _op(MOVE, (mask, 4), (target_centi & 0xFFFF, 2), (over_ms, 2))
 
 
 def orient(target_centideg: int, time_ms: int) -> bytes:

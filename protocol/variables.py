@@ -43,8 +43,8 @@ VARIABLES = (
     Variable("can_overflows", "H"),  # Times that CAN frames to the robot were lost unread, modulo 65536.
     Variable("can_refused", "H"),  # Frames of the robot for which CAN had no room, modulo 65536.
     Variable("can_bus_offs", "H"),  # Looks, ten a second, that found the robot off the bus by errors, modulo 65536.
-    Variable("joint_centideg", "h+"),  # Angle of the joint as measured.
-    Variable("commanded_centideg", "h+"),  # Angle that the joint is told to go to, -32768: it is limp.
+    Variable("joint_centi", "h+"),  # Angle of the joint as measured.
+    Variable("commanded_centi", "h+"),  # Angle that the joint is told to go to, -32768: it is limp.
     Variable("joint_ma", "H+"),  # Current of the joint's servo.
     Variable("object_centideg", "h@"),  # Angle of the gripped object as the camera sees it, -32768: not known.
 )
@@ -111,6 +111,6 @@ USUAL = tuple([
     number(name)
     for name in (
         "state", "step", "supply_mv", "current_ma", "board_decidegc", "roll_decideg", "pitch_decideg", "down",
-        "duty_permille", "coil_decidegc", "joint_centideg", "commanded_centideg", "joint_ma", "object_centideg",
+        "duty_permille", "coil_decidegc", "joint_centi", "commanded_centi", "joint_ma", "object_centideg",
     )
 ])  # fmt: skip

@@ -150,9 +150,9 @@ class FakeRobot:
             self.object_centideg = order.target_centideg
         for i, joint in enumerate(self.joints):
             if message is messages.ORIENT:
-                joint.move(joint.commanded_centideg - order.target_centideg, now_ms + order.time_ms, order.hold_ms)
+                joint.move(joint.commanded_centi - order.target_centideg, now_ms + order.time_ms, order.hold_ms)
             elif order.joints >> len(self.duty) + i & 1:
-                joint.move(order.target_centideg, now_ms + order.over_ms, order.hold_ms)
+                joint.move(order.target_centi, now_ms + order.over_ms, order.hold_ms)
 
     def _go_on(self, now_ms: int) -> None:
         for i, until_ms in list(self._until.items()):
@@ -177,7 +177,7 @@ class FakeRobot:
         values = variables.veiled(struct.pack(
             variables.layout(variables.USUAL, *counts),
             self.state, 0, self.supply_mv, 0, 231, *self.attitude.values(), *self.duty, *degrees,
-            *[joint.centideg for joint in self.joints], *[joint.commanded_centideg for joint in self.joints],
+            *[joint.centi for joint in self.joints], *[joint.commanded_centi for joint in self.joints],
             *[joint.ma for joint in self.joints], *[self.object_centideg] * self.parts.cameras,
         ))  # fmt: skip
         now_ms = (self.uptime_ms - late_ms) & 0xFFFFFFFF
@@ -217,7 +217,7 @@ class FakeRobot:
         """Switch every coil off and let every joint go limp."""
         self.duty = [0] * len(self.duty)
         for joint in self.joints:
-            joint.commanded_centideg = variables.UNKNOWN_ANGLE
+            joint.commanded_centi = variables.UNKNOWN_ANGLE
 
     def _send(self, message, now_ms: int, **values) -> None:
         self.link.send(message.number, message.pack(**values), now_ms)
@@ -237,27 +237,27 @@ class FakeJoint:
     """A joint that stands where it was told to go as soon as its time is over."""
 
     def __init__(self) -> None:
-        self.centideg = 0
-        self.commanded_centideg = variables.UNKNOWN_ANGLE
+        self.centi = 0
+        self.commanded_centi = variables.UNKNOWN_ANGLE
         self.ma = 120  # while it is driven it takes ten times as much
         self._arrives_ms = self._ends_ms = 0
 
     @property
     def driven(self) -> bool:
         """Return whether it has pulses."""
-        return self.commanded_centideg != variables.UNKNOWN_ANGLE
+        return self.commanded_centi != variables.UNKNOWN_ANGLE
 
-    def move(self, target_centideg: int, arrives_ms: int, hold_ms: int) -> None:
+    def move(self, target_centi: int, arrives_ms: int, hold_ms: int) -> None:
         """Go there, and go limp that long after."""
-        self.commanded_centideg, self.ma = target_centideg, 1200
+        self.commanded_centi, self.ma = target_centi, 1200
         self._arrives_ms, self._ends_ms = arrives_ms, arrives_ms + hold_ms
 
     def step(self, now_ms: int) -> None:
         """Arrive, or go limp, when it is time."""
         if self.driven and now_ms >= self._arrives_ms:
-            self.centideg = self.commanded_centideg
+            self.centi = self.commanded_centi
         if self.driven and now_ms >= self._ends_ms:
-            self.commanded_centideg, self.ma = variables.UNKNOWN_ANGLE, 120
+            self.commanded_centi, self.ma = variables.UNKNOWN_ANGLE, 120
 
 
 def plug_in(line: object, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -160,7 +160,7 @@ class Converter:
         self.ma = [100, 100]
         self.lag = 0.0
         self.stuck_counts = {4: 62, 5: 2048}  # of an input, whatever the joint does; of a third one from the start
-        self.rest_centideg = [0, 0]  # where a limp joint stands
+        self.rest_centi = [0, 0]  # where a limp joint stands
         self._servos = servos
 
     def counts(self, channel: int) -> int:
@@ -170,9 +170,9 @@ class Converter:
             return self.ma[channel] * 1000 // 1611 + 1
         servo = list(self._servos.values())[channel - 2]
         if servo.width_ns is not None:
-            told_centideg = (servo.width_ns - 1_500_000) * 9 / 1000
-            self.rest_centideg[channel - 2] += (told_centideg - self.rest_centideg[channel - 2]) * (1 - self.lag)
-        return 410 + round((self.rest_centideg[channel - 2] + 9000) * 3276 / 18000)
+            told_centi = (servo.width_ns - 1_500_000) * 9 / 1000
+            self.rest_centi[channel - 2] += (told_centi - self.rest_centi[channel - 2]) * (1 - self.lag)
+        return 410 + round((self.rest_centi[channel - 2] + 9000) * 3276 / 18000)
 
 
 class Watcher:
@@ -358,10 +358,10 @@ class Rig:
         """Fire and return the answers."""
         return self.say(messages.FIRE, coils=coils, duty_permille=duty_permille, hold_ms=hold_ms)
 
-    def move(self, joints: int, target_centideg: int, over_ms: int = 100, hold_ms: int = 5000):
+    def move(self, joints: int, target_centi: int, over_ms: int = 100, hold_ms: int = 5000):
         """Move joints and return the answers."""
         return self.say(
-            messages.MOVE, joints=joints, target_centideg=target_centideg, over_ms=over_ms, hold_ms=hold_ms
+            messages.MOVE, joints=joints, target_centi=target_centi, over_ms=over_ms, hold_ms=hold_ms
         )  # fmt: skip
 
     def upload(self, code: bytes, header: bytes):

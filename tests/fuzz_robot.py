@@ -81,8 +81,8 @@ class Robot:
             if after_ns is None:
                 continue
             servo = self.profile.servo
-            assert servo.width_ns(servo.least_centideg) <= after_ns <= servo.width_ns(servo.most_centideg)
-            way_ns = servo.width_ns(servo.slew_centideg_per_s * FRAME_MS // 1000) - servo.width_ns(-2)
+            assert servo.width_ns(servo.least_centi) <= after_ns <= servo.width_ns(servo.most_centi)
+            way_ns = servo.width_ns(servo.slew_centi_per_s * FRAME_MS // 1000) - servo.width_ns(-2)
             assert before_ns is None or abs(after_ns - before_ns) <= way_ns
 
     def _widths(self) -> list:

@@ -80,11 +80,11 @@ def hand() -> Iterator[tuple[str, bytes]]:
         armed = bytes((mode,)) + HELLO + b"\xfc" * 2 + ARM + WAIT * 5
         fields = {"over_ms": 200, "hold_ms": 3000}
         grip = b"".join(
-            told(messages.MOVE, messages.MOVE.pack(joints=joint, target_centideg=target, **fields), 0x07)
+            told(messages.MOVE, messages.MOVE.pack(joints=joint, target_centi=target, **fields), 0x07)
             for joint, target in ((right, 250), (left, -250))
         )
         turn = told(messages.ORIENT, messages.ORIENT.pack(target_centideg=500, time_ms=1000, hold_ms=1000), 0x07)
-        there = program.Condition(program.ANGLE, program.ALL, program.BELOW, 300, right | left)
+        there = program.Condition(program.POSITION, program.ALL, program.BELOW, 300, right | left)
         strained = program.Condition(program.LOAD, program.ANY, program.ABOVE, 2000, right)
         turned = program.Condition(program.ORIENTATION, program.ANY, program.ABOVE, 400, 0)
         closed = program.move(right, 250, 200) + program.move(left, -250, 200) + program.delay(200)

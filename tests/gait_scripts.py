@@ -34,11 +34,13 @@ ROUND = {
     "program": {"bytes_max": 1024, "depth_max": 8, "guards_max": 8},
 }  # fmt: skip
 
-JOINTS = [{"label": label, "kind": "servo", "pin": 8 + i, "current": i, "angle": 2 + i} for i, label in enumerate("RL")]
+JOINTS = [
+    {"label": label, "kind": "servo", "pin": 8 + i, "current": i, "position": 2 + i} for i, label in enumerate("RL")
+]
 SERVO = {
-    "least_centideg": -3000, "most_centideg": 3000, "slew_centideg_per_s": 10000, "hold_max_ms": 5000,
-    "stall_ma": 2400, "stall_ms": 300, "astray_centideg": 500, "astray_ms": 500,
-    "pulse_hz": 200, "low_us": 500, "high_us": 2500, "span_centideg": 18000,
+    "unit": "deg", "least_centi": -3000, "most_centi": 3000, "slew_centi_per_s": 10000, "hold_max_ms": 5000,
+    "stall_ma": 2400, "stall_ms": 300, "astray_centi": 500, "astray_ms": 500,
+    "pulse_hz": 200, "low_us": 500, "high_us": 2500, "span_centi": 18000,
     "ua_per_count": 1611, "low_counts": 410, "high_counts": 3686,
 }  # fmt: skip
 

@@ -262,7 +262,7 @@ def rolling():
 def turning():
     """Return a program that moves joints and asks for them and for the object in every way."""
     strained = program.Condition(program.LOAD, program.ANY, program.ABOVE, 2000, 0b11)
-    arrived = program.Condition(program.ANGLE, program.ALL, program.BELOW, 900, 0b11)
+    arrived = program.Condition(program.POSITION, program.ALL, program.BELOW, 900, 0b11)
     turned = program.Condition(program.ORIENTATION, program.ANY, program.ABOVE, 150, 0)
     ops = (
         program.guard(strained), program.step(1), program.move(1, 250, 100), program.move(2, -250, 100),
@@ -276,9 +276,9 @@ def driving(profile):
     """Return (time_ms, message, fields) of what drives the robot at once, mistakes included."""
     if profile.joints:
         return [
-            (30, messages.MOVE, {"joints": 1, "target_centideg": 0, "over_ms": 10, "hold_ms": 10}),
-            (190, messages.MOVE, {"joints": 3, "target_centideg": 3001, "over_ms": 10, "hold_ms": 10}),
-            (195, messages.MOVE, {"joints": 3, "target_centideg": 321, "over_ms": 50, "hold_ms": 40}),
+            (30, messages.MOVE, {"joints": 1, "target_centi": 0, "over_ms": 10, "hold_ms": 10}),
+            (190, messages.MOVE, {"joints": 3, "target_centi": 3001, "over_ms": 10, "hold_ms": 10}),
+            (195, messages.MOVE, {"joints": 3, "target_centi": 321, "over_ms": 50, "hold_ms": 40}),
             (200, messages.ORIENT, {"target_centideg": -100, "time_ms": 30, "hold_ms": 20}),
             (2010, messages.ORIENT, {"target_centideg": 0, "time_ms": 1000, "hold_ms": 1000}),
         ]

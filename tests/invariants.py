@@ -139,7 +139,7 @@ def _heat(run: Run, channel: int) -> Iterator[str]:
 def _path(run: Run, joint: int) -> Iterator[str]:
     """Yield where a joint was told an angle that it may not have, or one too far from the last."""
     servo = run.profile.servo
-    low, high, speed = servo.least_centideg / 100, servo.most_centideg / 100, servo.slew_centideg_per_s / 100
+    low, high, speed = servo.least_centi / 100, servo.most_centi / 100, servo.slew_centi_per_s / 100
     for at_us, deg in run.angles[joint]:
         if not low - ANGLE_MARGIN_DEG <= deg <= high + ANGLE_MARGIN_DEG:
             yield f"told {deg:.2f} deg at {at_us / 1e6:.4f} s, its range is {low:g} to {high:g}"

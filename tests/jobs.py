@@ -151,7 +151,7 @@ def _payload(draw: Random, profile: Profile) -> tuple[messages.Message, bytes]:
     if profile.joint_labels:
         *targets, over_ms = _way(draw)
         joint, hold_ms = draw.randrange(2), draw.randint(0, 5000)
-        fields = {"target_centideg": targets[joint], "over_ms": over_ms, "hold_ms": hold_ms}
+        fields = {"target_centi": targets[joint], "over_ms": over_ms, "hold_ms": hold_ms}
         return messages.MOVE, messages.MOVE.pack(joints=1 << joint, **fields)
     coils, duty, hold_ms = _order(draw, profile)
     return messages.FIRE, messages.FIRE.pack(coils=coils, duty_permille=duty, hold_ms=hold_ms)

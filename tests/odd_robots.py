@@ -6,7 +6,7 @@ from pathlib import Path
 from tests.firmware_bench import FINGERS, PROFILE, Rig
 
 ROUND, PINCH = json.loads(PROFILE.read_bytes()), json.loads(FINGERS.read_bytes())
-THIRD = {"label": "M", "kind": "servo", "pin": 10, "current": 4, "angle": 5}
+THIRD = {"label": "M", "kind": "servo", "pin": 10, "current": 4, "position": 5}
 
 
 def without(data: dict, *names: str) -> dict:
@@ -31,9 +31,9 @@ ODD = {
     "three joints": fingers([*PINCH["channels"], THIRD]),
     "no camera": without(PINCH, "camera", "orient"),
     "no loop": without(PINCH, "orient"),
-    "bent inward": fingers(least_centideg=-5000, most_centideg=-1000),
-    "half turn": fingers(least_centideg=-9000, most_centideg=9000),
-    "slow": fingers(slew_centideg_per_s=100),
+    "bent inward": fingers(least_centi=-5000, most_centi=-1000),
+    "half turn": fingers(least_centi=-9000, most_centi=9000),
+    "slow": fingers(slew_centi_per_s=100),
 }
 
 

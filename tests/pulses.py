@@ -46,5 +46,5 @@ class Pulses:
     def angles(self, limits: ServoLimits) -> list[tuple[int, float]]:
         """Return from when on it was told which angle [deg]."""
         middle_us = (limits.low_us + limits.high_us) / 2
-        per_us = limits.span_centideg / 100 / (limits.high_us - limits.low_us)
+        per_us = limits.span_centi / 100 / (limits.high_us - limits.low_us)
         return [(time_us, (width_us - middle_us) * per_us) for time_us, width_us in self.widths]

@@ -93,7 +93,7 @@ class Bare:
         self.limbs.look(self.now_ms)
         self.channels.update(self.now_ms, self.sense.temperature_millidegc)
         self.limbs.drive(self.now_ms, True)
-        for told, centideg in zip(self.told, self.limbs.joints.commanded_centideg, strict=True):
+        for told, centideg in zip(self.told, self.limbs.joints.commanded_centi, strict=True):
             told.append(centideg)
         self.now_ms += STEP_MS
 

@@ -28,7 +28,7 @@ class Unplugged:
 
 def commanded(rig) -> list[int]:
     """Return the angles that the joints are told."""
-    return list(rig.core.limbs.joints.commanded_centideg)
+    return list(rig.core.limbs.joints.commanded_centi)
 
 
 def steps(rig, ms: int) -> list[int]:
@@ -74,17 +74,17 @@ def test_a_program_that_is_behind_its_time_turns_no_joint_back(armed):
 
 
 def test_no_number_of_a_movement_is_beyond_the_small_integers_of_a_board():
-    limits = ServoLimits(PINCH["servo"] | {"least_centideg": -9000, "most_centideg": 9000})
-    limits.slew_centideg_per_s = Small(limits.slew_centideg_per_s)
+    limits = ServoLimits(PINCH["servo"] | {"least_centi": -9000, "most_centi": 9000})
+    limits.slew_centi_per_s = Small(limits.slew_centi_per_s)
     joints = Joints([Unplugged()], 0, limits)
-    joints.commanded_centideg = joints._start_centideg = joints._target_centideg = [Small(-9000)]
+    joints.commanded_centi = joints._start_centi = joints._target_centi = [Small(-9000)]
     joints.move(1, 9000, 65535, 60000, Small(1 << 29))
-    joints._start_centideg, joints._target_centideg = [Small(-9000)], [Small(9000)]
+    joints._start_centi, joints._target_centi = [Small(-9000)], [Small(9000)]
 
     for passed_ms in (0, 1, 32768, 65534, 65535):
         joints.update(Small((1 << 29) + passed_ms))
         joints.write()
-        assert joints.commanded_centideg[0] == pytest.approx(-9000 + 18000 * passed_ms / 65535, abs=1)
+        assert joints.commanded_centi[0] == pytest.approx(-9000 + 18000 * passed_ms / 65535, abs=1)
 
 
 def test_no_number_of_the_loop_is_beyond_the_small_integers_of_a_board(gripping):
@@ -202,7 +202,7 @@ def test_the_usual_variables_of_any_robot_are_as_long_as_its_profile_says(tmp_pa
 
     assert told[variables.number("state")] == messages.IDLE
     assert set(told[variables.number("coil_decidegc")]) <= {250}
-    assert told[variables.number("commanded_centideg")] == (-32768,) * counts[1]
+    assert told[variables.number("commanded_centi")] == (-32768,) * counts[1]
 
 
 @pytest.mark.parametrize("name", sorted(ODD))
@@ -238,7 +238,7 @@ def test_servos_beside_coils_are_no_current_that_nothing_explains(mixed):
 
 
 def test_a_condition_on_a_joint_beside_coils_is_of_that_joint(mixed):
-    above = program.Condition(program.ANGLE, program.ALL, program.ABOVE, 400, 0b1000)
+    above = program.Condition(program.POSITION, program.ALL, program.ABOVE, 400, 0b1000)
     moves = program.move(0b0100, -500, 100) + program.move(0b1000, 500, 100)
 
     run_program(mixed, moves + program.wait(above, 1000, program.ABORT) + program.halt())
@@ -263,8 +263,8 @@ def test_a_program_that_the_camera_aborted_leaves_the_next_one_alone(armed):
 @pytest.mark.parametrize(
     "servo",
     [
-        {"least_centideg": 100, "most_centideg": -100}, {"least_centideg": -9001}, {"most_centideg": 9001},
-        {"slew_centideg_per_s": 0}, {"span_centideg": 150}, {"ua_per_count": 20_000}, {"high_counts": 410},
+        {"least_centi": 100, "most_centi": -100}, {"least_centi": -9001}, {"most_centi": 9001},
+        {"slew_centi_per_s": 0}, {"span_centi": 150}, {"ua_per_count": 20_000}, {"high_counts": 410},
         {"low_counts": 2000, "high_counts": 2100}, {"high_us": 400}, {"low_us": -1}, {"high_us": 5001}, {"pulse_hz": 0},
         {"pulse_hz": 40, "high_us": 24_000},
     ],

@@ -140,7 +140,7 @@ def test_orient_tells_when_the_swing_is_at_its_limit(softrig, line):
 
 @pytest.mark.parametrize(("angle", "most"), [("25deg", 2.0), ("-25deg", 20.0)])
 def test_the_limit_of_the_swing_is_that_of_its_side(softrig, monkeypatch, angle, most):
-    one_sided = FINGERS.replace(b'"least_centideg": -3000', b'"least_centideg": -1000')
+    one_sided = FINGERS.replace(b'"least_centi": -3000', b'"least_centi": -1000')
     plug_in(FakeLine(FakeRobot(one_sided)), monkeypatch)
 
     told = json.loads(softrig("orient", angle, "--grip", "8deg", "--json").out)
@@ -269,7 +269,7 @@ def test_watch_tells_of_joints_by_label_and_leaves_coils_out(softrig, line):
 
 
 def test_watch_leaves_out_what_the_session_before_had_asked_for(softrig, line):
-    told = softrig("watch", "joint_centideg", "--for", "300ms")  # this robot goes on with the usual ones
+    told = softrig("watch", "joint_centi", "--for", "300ms")  # this robot goes on with the usual ones
 
     assert (told.out, told.err) == ("", "0 records, 0 missed\n")
 

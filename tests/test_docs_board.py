@@ -84,7 +84,7 @@ def test_a_robot_below_the_mosfets_voltage_gets_a_relay():
 def test_each_joint_of_a_robot_is_wired_as_the_board_is(name):
     profile = json.loads((ROOT / f"firmware/robots/{name}.json").read_text(encoding="utf-8"))
 
-    assert hardwarepage.wiring(profile) == "R SERVO0, current CH0, angle CH2, L SERVO1, current CH1, angle CH3"
+    assert hardwarepage.wiring(profile) == "R SERVO0, current CH0, position CH2, L SERVO1, current CH1, position CH3"
     assert profile["camera"]["address"] == bench.CAMERA
     assert {channel["pin"] for channel in profile["channels"]} <= set(bench.SERVOS)
 

@@ -56,7 +56,7 @@ def test_a_joint_holds_and_then_goes_limp(armed):
 
 
 def test_a_limp_joint_sets_out_from_where_it_is_no_faster_than_it_may(armed):
-    armed.board.converter.rest_centideg[0] = -3000
+    armed.board.converter.rest_centi[0] = -3000
     armed.run(20)
 
     armed.move(R, 3000, over_ms=0, hold_ms=1000)
@@ -70,11 +70,11 @@ def test_a_limp_joint_sets_out_from_where_it_is_no_faster_than_it_may(armed):
 @pytest.mark.parametrize(
     ("order", "code", "value", "limit"),
     [
-        ({"target_centideg": 3001}, codes.RANGE_LIMIT, 3001, 3000),
-        ({"target_centideg": -3001}, codes.RANGE_LIMIT, -3001, -3000),
+        ({"target_centi": 3001}, codes.RANGE_LIMIT, 3001, 3000),
+        ({"target_centi": -3001}, codes.RANGE_LIMIT, -3001, -3000),
         ({"over_ms": 20}, codes.SLEW_LIMIT, 40000, 36000),
         ({"over_ms": 0}, codes.SLEW_LIMIT, 800000, 36000),
-        ({"target_centideg": 37, "over_ms": 1}, codes.SLEW_LIMIT, 37000, 36000),
+        ({"target_centi": 37, "over_ms": 1}, codes.SLEW_LIMIT, 37000, 36000),
         ({"hold_ms": 60001}, codes.HOLD_LIMIT, 60001, 60000),
         ({"joints": 0b100}, codes.UNKNOWN_CHANNEL, 0b100, 0b11),
         ({"joints": 0}, codes.UNKNOWN_CHANNEL, 0, 0b11),
@@ -85,7 +85,7 @@ def test_what_breaks_a_limit_is_refused_with_it_and_nothing_moves(armed, order, 
     armed.run(200)
 
     refused = refusal(
-        armed.say(messages.MOVE, **{"joints": R, "target_centideg": 800, "over_ms": 1000, "hold_ms": 100, **order})
+        armed.say(messages.MOVE, **{"joints": R, "target_centi": 800, "over_ms": 1000, "hold_ms": 100, **order})
     )
     armed.run(100)
 
@@ -196,12 +196,12 @@ def test_the_current_of_a_limp_joint_is_no_stall(armed):
 
 
 def test_the_angle_and_the_current_are_read_as_they_are(hand):
-    hand.board.converter.rest_centideg[0] = -1234
+    hand.board.converter.rest_centi[0] = -1234
     hand.board.converter.ma[1] = 777
     hand.run(10)
 
     joints = hand.core.control.limbs.joints
-    assert joints.measured_centideg[0] == pytest.approx(-1234, abs=6)
+    assert joints.measured_centi[0] == pytest.approx(-1234, abs=6)
     assert joints.current_ma[1] == pytest.approx(777, abs=2)
 
 
@@ -229,7 +229,7 @@ def test_joints_hold_beyond_the_end_of_a_program_until_the_robot_is_disarmed(han
 
 
 def test_a_program_waits_for_an_angle_and_trips_at_a_guarded_current(hand):
-    above = program.Condition(program.ANGLE, program.ANY, program.ABOVE, 400, R)
+    above = program.Condition(program.POSITION, program.ANY, program.ABOVE, 400, R)
     guarded = program.guard(program.Condition(program.LOAD, program.ANY, program.ABOVE, 1000, L))
     code = guarded + program.move(R, 800, 400) + program.wait(above, 5000, program.ABORT) + program.step(2)
     run_program(hand, code + program.delay(60000) + program.halt())

@@ -23,7 +23,7 @@ def gripping():
 
 def commanded(rig) -> tuple[int, int]:
     """Return the angles that both joints are told."""
-    return tuple(rig.core.control.limbs.joints.commanded_centideg)
+    return tuple(rig.core.control.limbs.joints.commanded_centi)
 
 
 def swing(rig) -> float:

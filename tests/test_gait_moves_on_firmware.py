@@ -26,15 +26,15 @@ GAIN = -0.5  # of the object's angle over the swing
 class Bare:
     """The firmware's sequencer and joints on a table top, which follow at once; the object follows their swing."""
 
-    def __init__(self, code: bytes, rest_centideg=(0, 0)) -> None:
+    def __init__(self, code: bytes, rest_centi=(0, 0)) -> None:
         self.board, profile = Table(), Profile(json.dumps(hand()).encode())
         sense = Sense(self.board, self.board.supply, 0, profile)
         self.limbs = Limbs(self.board, profile)
         self.player = Player(Channels([], [], profile.coil, 2), sense, Blind(), self.limbs)
-        self.board.converter.rest_centideg = list(rest_centideg)
+        self.board.converter.rest_centi = list(rest_centi)
         self.code, self.now_ms = code, 0
         self.fallen = False
-        self.fastest_centideg_per_s = 0
+        self.fastest_centi_per_s = 0
         self.told = ([], [])
 
     def run(self) -> int:
@@ -46,7 +46,7 @@ class Bare:
                 self.player.load(self.code, self.now_ms)
             if self.now_ms >= READY_MS:
                 outcome = self.player.run(self.now_ms)
-            before, were_on = list(self.limbs.joints.commanded_centideg), self.limbs.joints.on_mask
+            before, were_on = list(self.limbs.joints.commanded_centi), self.limbs.joints.on_mask
             self.limbs.drive(self.now_ms, True)
             self._look(before, were_on)
             self.now_ms += STEP_MS
@@ -56,14 +56,14 @@ class Bare:
     def _look(self, before, were_on) -> None:
         joints = self.limbs.joints
         self.fallen |= were_on & ~joints.on_mask != 0
-        for old, new, told in zip(before, joints.commanded_centideg, self.told, strict=True):
+        for old, new, told in zip(before, joints.commanded_centi, self.told, strict=True):
             if LIMP in (old, new):
                 continue
             told.append(new)
             if not self.limbs.orient.active:  # it turns them a whole frame's way at once
-                self.fastest_centideg_per_s = max(self.fastest_centideg_per_s, abs(new - old) * 1000 // STEP_MS)
+                self.fastest_centi_per_s = max(self.fastest_centi_per_s, abs(new - old) * 1000 // STEP_MS)
         if joints.on_mask == 0b11:
-            self.board.watcher.centideg = round(GAIN * sum(joints.commanded_centideg) / 2)
+            self.board.watcher.centideg = round(GAIN * sum(joints.commanded_centi) / 2)
 
 
 rests = st.tuples(st.integers(-6000, 6000), st.integers(-6000, 6000))
@@ -142,9 +142,9 @@ def test_what_the_checker_passes_of_joints_is_never_refused_and_never_beyond_its
     assert bare.run() in (FINISHED, TIMED_OUT)
 
     assert not bare.fallen
-    assert bare.fastest_centideg_per_s <= 10_000 + 1000 // STEP_MS  # a rounded hundredth in one step
+    assert bare.fastest_centi_per_s <= 10_000 + 1000 // STEP_MS  # a rounded hundredth in one step
     assert bare.now_ms <= worst.longest_ms
     for told, joint in zip(bare.told, worst.joints, strict=True):
         assert all(-3000 <= angle <= 3000 for angle in told)
         later = told[1000 // STEP_MS :]  # from the first move's end on
-        assert all(joint.least_centideg <= angle <= joint.most_centideg for angle in later)
+        assert all(joint.least_centi <= angle <= joint.most_centi for angle in later)

@@ -94,9 +94,9 @@ def test_the_worst_case_of_a_random_script_of_moves_is_consistent(body):
 
     assert 1000 <= made.shortest_ms <= made.longest_ms
     for joint in made.joints:
-        assert joint.least_centideg <= 0 <= joint.most_centideg
+        assert joint.least_centi <= 0 <= joint.most_centi
         assert joint.held_ms <= made.longest_ms - 1000 + 5
-        assert joint.fastest_centideg_per_s >= 3000
+        assert joint.fastest_centi_per_s >= 3000
     assert made.coils == ()
 
 

@@ -31,21 +31,21 @@ def limits(body, **servo):
 
 def speeds(body, label="R"):
     """Return the fastest that a joint may be told to turn, in degrees a second."""
-    return joint(report(body), label).fastest_centideg_per_s / 100
+    return joint(report(body), label).fastest_centi_per_s / 100
 
 
 def test_orders_angles_and_speed_are_counted_for_each_joint():
     made = report(HOME + "move R to 20 deg over 1 s\nrepeat 3:\n    move both to -10 deg over 1 s\n    wait 1 s")
 
     assert (joint(made).orders, joint(made, "L").orders) == (5, 4)
-    assert (joint(made).least_centideg, joint(made).most_centideg) == (-1000, 2000)
-    assert (joint(made, "L").least_centideg, joint(made, "L").most_centideg) == (-1000, 0)
+    assert (joint(made).least_centi, joint(made).most_centi) == (-1000, 2000)
+    assert (joint(made, "L").least_centi, joint(made, "L").most_centi) == (-1000, 0)
 
 
 def test_a_joint_that_is_not_moved_has_no_angles():
     made = joint(report("move R to 8 deg over 1 s"), "L")
 
-    assert (made.orders, made.least_centideg, made.most_centideg, made.held_ms) == (0, None, None, 0)
+    assert (made.orders, made.least_centi, made.most_centi, made.held_ms) == (0, None, None, 0)
 
 
 def test_time_is_the_sum_of_what_comes_one_after_another():
@@ -82,34 +82,34 @@ def test_where_a_wait_may_cut_a_way_short_it_begins_at_the_worse_end():
 def test_an_orient_may_swing_both_joints_as_far_as_it_is_allowed_from_their_grip():
     made = report("move R to 4 deg over 1 s\nmove L to -2 deg over 1 s\norient 5 deg for 1 s")
 
-    assert (joint(made).least_centideg, joint(made).most_centideg) == (300 - 2000, 300 + 2000)
-    assert (joint(made, "L").least_centideg, joint(made, "L").most_centideg) == (-2300, 1700)
+    assert (joint(made).least_centi, joint(made).most_centi) == (300 - 2000, 300 + 2000)
+    assert (joint(made, "L").least_centi, joint(made, "L").most_centi) == (-2300, 1700)
 
 
 def test_an_orient_keeps_joints_within_their_range():
     made = report("move R to 15 deg over 1 s\nmove L to -15 deg over 1 s\norient 5 deg for 1 s")
 
-    assert (joint(made).least_centideg, joint(made).most_centideg) == (-500, 3000)
-    assert (joint(made, "L").least_centideg, joint(made, "L").most_centideg) == (-3000, 500)
+    assert (joint(made).least_centi, joint(made).most_centi) == (-500, 3000)
+    assert (joint(made, "L").least_centi, joint(made, "L").most_centi) == (-3000, 500)
 
 
 def test_an_orient_keeps_joints_within_a_range_that_is_not_the_same_on_both_sides():
-    made = report("move R to 4 deg over 1 s\nmove L to -4 deg over 1 s\norient 5 deg for 1 s", least_centideg=-1000)
+    made = report("move R to 4 deg over 1 s\nmove L to -4 deg over 1 s\norient 5 deg for 1 s", least_centi=-1000)
 
-    assert (joint(made).least_centideg, joint(made).most_centideg) == (-1000, 2400)
-    assert (joint(made, "L").least_centideg, joint(made, "L").most_centideg) == (-1000, 1600)
+    assert (joint(made).least_centi, joint(made).most_centi) == (-1000, 2400)
+    assert (joint(made, "L").least_centi, joint(made, "L").most_centi) == (-1000, 1600)
 
 
 def test_an_orient_leaves_a_third_joint_alone():
     data = hand()
-    data["channels"] = [*data["channels"], {"label": "M", "kind": "servo", "pin": 10, "current": 4, "angle": 5}]
+    data["channels"] = [*data["channels"], {"label": "M", "kind": "servo", "pin": 10, "current": 4, "position": 5}]
     profile = read_profile(json.dumps(data).encode())
     body = "move both to 0 deg over 1 s\nmove M to 0 deg over 1 s\norient 5 deg for 1 s\nmove M to 5 deg over 1 s"
 
     made = round_report(body, profile=profile)
 
     assert made.sound
-    assert (joint(made, "M").orders, joint(made, "M").most_centideg) == (2, 500)
+    assert (joint(made, "M").orders, joint(made, "M").most_centi) == (2, 500)
 
 
 def test_after_an_orient_a_joint_is_anywhere_within_its_swing():
@@ -123,7 +123,7 @@ def test_orients_that_follow_each_other_keep_their_grip():
     body = HOME + "repeat 5:\n    orient 5 deg for 1 s\n    orient -5 deg for 1 s overlap 200 ms"
 
     assert limits(body) == []
-    assert joint(report(body)).most_centideg == 2000
+    assert joint(report(body)).most_centi == 2000
 
 
 def test_time_held_counts_from_the_end_of_an_order_to_the_next_or_to_the_end():
@@ -147,8 +147,8 @@ def test_a_loop_of_many_turns_is_worked_out_as_one_of_few():
     few, many = (joint(report(body.format(turns) + after)) for turns in (3, 9999))
 
     assert many.orders == 2 * 9999 + 1
-    assert many.fastest_centideg_per_s == 6300
-    assert (many.held_ms, many.fastest_centideg_per_s) == (few.held_ms, few.fastest_centideg_per_s)
+    assert many.fastest_centi_per_s == 6300
+    assert (many.held_ms, many.fastest_centi_per_s) == (few.held_ms, few.fastest_centi_per_s)
 
 
 def test_a_joint_that_a_long_loop_forgets_is_told_for_how_long():
@@ -223,10 +223,10 @@ def test_the_numbers_for_json_are_those_of_the_parts_that_the_robot_has():
     data = report(HOME + "move R to -8 deg over 500 ms").as_dict()
 
     assert json.loads(json.dumps(data)) == data
-    assert data["speed_centideg_per_s"] == {"most": 3000, "limit": 10000}
+    assert data["speed_centi_per_s"] == {"most": 3000, "limit": 10000}
     assert data["held_ms"] == {"most": 505, "limit": 5000}
     assert data["joints"]["R"] == {
-        "orders": 2, "least_centideg": -800, "most_centideg": 0, "fastest_centideg_per_s": 3000, "held_ms": 0,
+        "orders": 2, "least_centi": -800, "most_centi": 0, "fastest_centi_per_s": 3000, "held_ms": 0,
     }  # fmt: skip
     assert data["coils"] == {}
     assert not {"at_once", "supply_current_ma", "heat_mj"} & set(data)
@@ -239,4 +239,4 @@ def test_a_robot_of_both_kinds_has_both_tables():
 
     assert "  A          1    1.00 s" in text
     assert "  R          1   8.0 .. 8.0 deg" in text
-    assert set(made.as_dict()) >= {"at_once", "heat_mj", "held_ms", "speed_centideg_per_s"}
+    assert set(made.as_dict()) >= {"at_once", "heat_mj", "held_ms", "speed_centi_per_s"}

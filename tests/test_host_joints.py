@@ -49,7 +49,7 @@ def record(form: int, values: bytes) -> bytes:
 def test_a_robot_of_joints_alone_has_no_coils():
     assert FINGER.labels == FINGER.joint_labels == ("R", "L")
     assert FINGER.coil_labels == ()
-    assert FINGER.servo.most_centideg == 3000
+    assert FINGER.servo.most_centi == 3000
     with pytest.raises(BadRequest, match="fingers has no coils"):
         _ = FINGER.coil
 

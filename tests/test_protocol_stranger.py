@@ -168,18 +168,18 @@ def test_records_of_telemetry_come_at_their_period(robot):
 
 
 def test_joints_move_hold_and_tell_of_themselves_and_of_the_object(fingers):
-    names = ["joint_centideg", "commanded_centideg", "coil_decidegc", "object_centideg", "state"]
+    names = ["joint_centi", "commanded_centi", "coil_decidegc", "object_centideg", "state"]
     fingers.subscribe(0, 50, names)
     fingers.arm()
-    fingers.order("move", joints=0b01, target_centideg=300, over_ms=200, hold_ms=1000)
-    fingers.order("move", joints=0b10, target_centideg=-300, over_ms=200, hold_ms=1000)
+    fingers.order("move", joints=0b01, target_centi=300, over_ms=200, hold_ms=1000)
+    fingers.order("move", joints=0b10, target_centi=-300, over_ms=200, hold_ms=1000)
     fingers.pass_s(0.6)
 
     values = [values for name, values in fingers.heard if name == "telemetry"][-1]["values"]
     record = fingers.words.unpack_record(values, names, coils=0, joints=2, cameras=1)
 
-    assert record["joint_centideg"] == pytest.approx([300, -300], abs=40)
-    assert record["commanded_centideg"] == [300, -300]
+    assert record["joint_centi"] == pytest.approx([300, -300], abs=40)
+    assert record["commanded_centi"] == [300, -300]
     assert (record["coil_decidegc"], record["state"]) == ([], 2)
     assert record["object_centideg"] == pytest.approx([0], abs=20)
 

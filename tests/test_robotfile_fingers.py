@@ -124,7 +124,7 @@ def test_a_servo_on_another_pin_than_the_profile_says_is_told(tmp_path):
 
 def test_a_joint_that_is_read_at_another_input_than_it_is_wired_to_is_told(tmp_path):
     profile = (PROFILES / "fingers.json").read_text(encoding="utf-8")
-    crossed = profile.replace('"current": 0, "angle": 2', '"current": 2, "angle": 0')
+    crossed = profile.replace('"current": 0, "position": 2', '"current": 2, "position": 0')
     (tmp_path / "mine.json").write_text(crossed, encoding="utf-8")
     text = TEXT.replace('profile = "fingers"', 'profile = "mine.json"')
     (tmp_path / "mine.toml").write_text(text, encoding="utf-8")

@@ -1282,7 +1282,7 @@ static inline int softrig_unpack_start(softrig_start *out, softrig_bytes payload
 #define SOFTRIG_MOVE_BYTES 10u
 typedef struct softrig_move {
     uint32_t joints; /* Bit mask of channels in the order of the profile. */
-    int16_t target_centideg; /* Where to. */
+    int16_t target_centi; /* Where to. */
     uint16_t over_ms; /* How long they are to take. */
     uint16_t hold_ms; /* Limp again after this long there unless driven anew. */
 } softrig_move;
@@ -1292,7 +1292,7 @@ static inline int softrig_pack_move(const softrig_move *in, uint8_t *out, size_t
     if (room < SOFTRIG_MOVE_BYTES)
         return -1;
     softrig_put32(out, in->joints);
-    softrig_put16(out + 4, (uint16_t)in->target_centideg);
+    softrig_put16(out + 4, (uint16_t)in->target_centi);
     softrig_put16(out + 6, in->over_ms);
     softrig_put16(out + 8, in->hold_ms);
     return (int)SOFTRIG_MOVE_BYTES;
@@ -1303,7 +1303,7 @@ static inline int softrig_unpack_move(softrig_move *out, softrig_bytes payload)
     if (payload.size != SOFTRIG_MOVE_BYTES)
         return -1;
     out->joints = softrig_get32(payload.at);
-    out->target_centideg = softrig_signed16(softrig_get16(payload.at + 4));
+    out->target_centi = softrig_signed16(softrig_get16(payload.at + 4));
     out->over_ms = softrig_get16(payload.at + 6);
     out->hold_ms = softrig_get16(payload.at + 8);
     return 0;

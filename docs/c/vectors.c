@@ -1021,14 +1021,14 @@ static void payload_54(void)
     static held payload, packed;
     softrig_move in, out;
     in.joints = 0u;
-    in.target_centideg = -32768;
+    in.target_centi = -32768;
     in.over_ms = 0u;
     in.hold_ms = 0u;
     hex(&payload, "00000000008000000000");
     check(same(packed.at, softrig_pack_move(&in, packed.at, HELD_MAX), &payload), "move 54");
     check(softrig_unpack_move(&out, view(&payload)) == 0, "move 54");
     check(out.joints == in.joints, "move 54");
-    check(out.target_centideg == in.target_centideg, "move 54");
+    check(out.target_centi == in.target_centi, "move 54");
     check(out.over_ms == in.over_ms, "move 54");
     check(out.hold_ms == in.hold_ms, "move 54");
 }
@@ -1038,14 +1038,14 @@ static void payload_55(void)
     static held payload, packed;
     softrig_move in, out;
     in.joints = 4294967295u;
-    in.target_centideg = 32767;
+    in.target_centi = 32767;
     in.over_ms = 65535u;
     in.hold_ms = 65535u;
     hex(&payload, "ffffffffff7fffffffff");
     check(same(packed.at, softrig_pack_move(&in, packed.at, HELD_MAX), &payload), "move 55");
     check(softrig_unpack_move(&out, view(&payload)) == 0, "move 55");
     check(out.joints == in.joints, "move 55");
-    check(out.target_centideg == in.target_centideg, "move 55");
+    check(out.target_centi == in.target_centi, "move 55");
     check(out.over_ms == in.over_ms, "move 55");
     check(out.hold_ms == in.hold_ms, "move 55");
 }
@@ -1055,14 +1055,14 @@ static void payload_56(void)
     static held payload, packed;
     softrig_move in, out;
     in.joints = 3454992675u;
-    in.target_centideg = 28690;
+    in.target_centi = 28690;
     in.over_ms = 32913u;
     in.hold_ms = 57380u;
     hex(&payload, "2301efcd1270918024e0");
     check(same(packed.at, softrig_pack_move(&in, packed.at, HELD_MAX), &payload), "move 56");
     check(softrig_unpack_move(&out, view(&payload)) == 0, "move 56");
     check(out.joints == in.joints, "move 56");
-    check(out.target_centideg == in.target_centideg, "move 56");
+    check(out.target_centi == in.target_centi, "move 56");
     check(out.over_ms == in.over_ms, "move 56");
     check(out.hold_ms == in.hold_ms, "move 56");
 }

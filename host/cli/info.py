@@ -16,7 +16,7 @@ from host.profile import Profile
 
 OF_COILS = ("duty_max_permille", "hold_max_ms", "on_max_ms", "rest_ms", "heat_budget_mj", "trip_degc")
 OF_JOINTS = (
-    "least_centideg", "most_centideg", "slew_centideg_per_s", "hold_max_ms", "stall_ma", "stall_ms", "astray_centideg",
+    "least_centi", "most_centi", "slew_centi_per_s", "hold_max_ms", "stall_ma", "stall_ms", "astray_centi",
     "astray_ms",
 )  # fmt: skip
 
@@ -96,7 +96,7 @@ def _joint_lines(joint: dict[str, Any], orient: dict[str, Any] | None) -> Iterat
     hold_s = joint["hold_max_ms"] / 1000
     yield f"  one move    {least:g} to {most:g} deg, at most {slew:g} deg/s, then held for {hold_s:g} s"
     yield f"  stall       trips at {joint['stall_ma']} mA for {joint['stall_ms']} ms"
-    yield f"  astray      trips {joint['astray_centideg'] / 100:g} deg beside its order for {joint['astray_ms']} ms"
+    yield f"  astray      trips {joint['astray_centi'] / 100:g} deg beside its order for {joint['astray_ms']} ms"
     if orient:
         gain, swing = orient["gain_permille_per_s"] / 1000, orient["swing_max_centideg"] / 100
         yield f"  orient      turns what the joints hold: gain {gain:g} /s, swing at most {swing:g} deg"

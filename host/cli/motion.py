@@ -63,7 +63,7 @@ def watched(face: Robot, time_ms: int) -> Motion:
 
 def stretch_ms(limits: ServoLimits) -> int:
     """Return what a limp joint may take longer than ordered: it crosses its whole range as fast as it may."""
-    return 1000 * (limits.most_centideg - limits.least_centideg) // limits.slew_centideg_per_s + 1
+    return 1000 * (limits.most_centi - limits.least_centi) // limits.slew_centi_per_s + 1
 
 
 def lines(joints: dict[str, dict[str, Any]], target_deg: float | None = None) -> Iterator[str]:

@@ -82,8 +82,8 @@ def _swing_deg(motion: Motion, labels: tuple[str, ...]) -> float | None:
 def _swing_max_deg(face: Robot, grip_centideg: int, swing_deg: float) -> float | None:
     """Return how far both joints may swing to that side with that grip, or None where the robot does not say."""
     limits, orient = face.profile.servo, face.profile.orient
-    room_centideg = (limits.most_centideg if swing_deg > 0 else -limits.least_centideg) - grip_centideg
-    return min(orient.swing_max_centideg, room_centideg) / 100 if orient else None
+    room_centi = (limits.most_centi if swing_deg > 0 else -limits.least_centi) - grip_centideg
+    return min(orient.swing_max_centideg, room_centi) / 100 if orient else None
 
 
 def _lines(fields: dict[str, Any]) -> Iterator[str]:

@@ -61,8 +61,8 @@ def _coils(profile: Profile, trial: Trial) -> Iterator[CoilReport]:
 
 def _joints(profile: Profile, trial: Trial) -> Iterator[JointReport]:
     for label, joint in zip(profile.joint_labels, trial.joints, strict=True):
-        angles = joint.lowest_centideg, joint.highest_centideg
-        yield JointReport(label, joint.moves, *angles, joint.fastest_centideg_per_s, joint.held_ms)
+        angles = joint.lowest_centi, joint.highest_centi
+        yield JointReport(label, joint.moves, *angles, joint.fastest_centi_per_s, joint.held_ms)
 
 
 def _walk(ops: Iterable[Op], depth: int = 1) -> Iterator[tuple[Op, int]]:
@@ -100,9 +100,9 @@ def _check_op(op: Op, depth: int, profile: Profile, problems: Problems) -> None:
 
 def _check_range(op: Move, profile: Profile, problems: Problems) -> None:
     limits, clause = profile.servo, op.node.clause("to")
-    if clause is not None and not limits.least_centideg <= op.target_centideg <= limits.most_centideg:
-        least, most = limits.least_centideg / 100, limits.most_centideg / 100
-        message = f"{op.target_centideg / 100:g} deg is outside {least:g} deg .. {most:g} deg"
+    if clause is not None and not limits.least_centi <= op.target_centi <= limits.most_centi:
+        least, most = limits.least_centi / 100, limits.most_centi / 100
+        message = f"{op.target_centi / 100:g} deg is outside {least:g} deg .. {most:g} deg"
         problems.add(_value(clause), "E317", message)
 
 

@@ -30,7 +30,7 @@ COIL = {
     "temperature": Source(program.TEMPERATURE, units.TEMPERATURE),
     "heat": Source(program.HEAT, units.ENERGY),
 }
-JOINT = {"angle": Source(program.ANGLE, units.ANGLE), "current": Source(program.LOAD, units.CURRENT)}
+JOINT = {"angle": Source(program.POSITION, units.ANGLE), "current": Source(program.LOAD, units.CURRENT)}
 BODY = {"roll": Source(program.ROLL, units.ANGLE, 10), "pitch": Source(program.PITCH, units.ANGLE, 10)}
 OBJECT = {"orientation": Source(program.ORIENTATION, units.ANGLE)}
 PARTS = {"supply": SUPPLY, "board": BOARD}

@@ -12,30 +12,30 @@ from host.gait.plan import Move, Orient
 class JointTrial:
     """One joint during the trial, and what it came to; `least` and `most` are the ends of its range."""
 
-    least_centideg: int
-    most_centideg: int
+    least_centi: int
+    most_centi: int
     moves: int = 0
-    lowest_centideg: int | None = None  # that it was told to go to, or may have been by an orient
-    highest_centideg: int | None = None
-    fastest_centideg_per_s: int = 0
+    lowest_centi: int | None = None  # that it was told to go to, or may have been by an orient
+    highest_centi: int | None = None
+    fastest_centi_per_s: int = 0
     held_ms: int = 0
     order: Move | Orient | None = None  # None: limp
     begin_ms: int = 0  # of its order, if every wait is over at once
     begin_most_ms: int = 0  # if every wait runs out
-    low_centideg: int = 0  # where it may have been when its move began, or be while it is oriented and after
-    high_centideg: int = 0
+    low_centi: int = 0  # where it may have been when its move began, or be while it is oriented and after
+    high_centi: int = 0
 
     def place(self, now_ms: int, most_ms: int) -> tuple[int, int]:
         """Return the lowest and the highest angle at which it may be told to stand; a limp joint lies anywhere."""
         order = self.order
         if order is None:
-            return self.least_centideg, self.most_centideg
+            return self.least_centi, self.most_centi
         if isinstance(order, Orient):
-            return self.low_centideg, self.high_centideg
+            return self.low_centi, self.high_centi
         passed = (now_ms - self.begin_ms, most_ms - self.begin_most_ms)
         shares = [min(passed_ms, order.time_ms) for passed_ms in passed]
-        ways = [(start, (order.target_centideg - start) * share, order.time_ms)
-                for start in (self.low_centideg, self.high_centideg) for share in shares]  # fmt: skip
+        ways = [(start, (order.target_centi - start) * share, order.time_ms)
+                for start in (self.low_centi, self.high_centi) for share in shares]  # fmt: skip
         return min(start + way // time for start, way, time in ways), max(
             start - -way // time for start, way, time in ways
         )
@@ -47,8 +47,8 @@ class JointTrial:
         passed_ms = most_ms - self.begin_most_ms - self.order.time_ms
         return passed_ms + STEP_MS if passed_ms > 0 else 0
 
-    def reach(self, low_centideg: int, high_centideg: int) -> None:
+    def reach(self, low_centi: int, high_centi: int) -> None:
         """Count these angles among those that it was told."""
-        lowest, highest = self.lowest_centideg, self.highest_centideg
-        self.lowest_centideg = low_centideg if lowest is None else min(lowest, low_centideg)
-        self.highest_centideg = high_centideg if highest is None else max(highest, high_centideg)
+        lowest, highest = self.lowest_centi, self.highest_centi
+        self.lowest_centi = low_centi if lowest is None else min(lowest, low_centi)
+        self.highest_centi = high_centi if highest is None else max(highest, high_centi)

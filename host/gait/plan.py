@@ -43,7 +43,7 @@ class Move:
     """Turn the joints of `mask` to an angle within `time_ms`, and hold them there; does not wait."""
 
     mask: int
-    target_centideg: int
+    target_centi: int
     time_ms: int
     step: int
     node: tree.Move
@@ -148,7 +148,7 @@ def _op(op: Order | Aim | Delay | Wait | Guard) -> bytes:  # noqa: PLR0911  # on
     if isinstance(op, Aim):
         return bytes(program.aim(op.kept, op.ahead, list(op.circle)))
     if isinstance(op, Move):
-        return bytes(program.move(op.mask, op.target_centideg, op.time_ms))
+        return bytes(program.move(op.mask, op.target_centi, op.time_ms))
     if isinstance(op, Orient):
         return bytes(program.orient(op.target_centideg, op.time_ms))
     if op.kept is not None:

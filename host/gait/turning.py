@@ -26,7 +26,7 @@ class Turning:
         self.joints: list[JointTrial] = []
         if self._labels:
             limits = profile.servo
-            self.joints = [JointTrial(limits.least_centideg, limits.most_centideg) for _ in self._labels]
+            self.joints = [JointTrial(limits.least_centi, limits.most_centi) for _ in self._labels]
 
     def expect(self, plan: Sequence[Op]) -> None:
         """Nothing that comes changes what is known now."""
@@ -77,19 +77,19 @@ class Turning:
         passed_ms = min(self._clock.now_ms - joint.begin_ms, order.time_ms)
         longest_ms = order.time_ms + self._profile.servo.hold_max_ms + 1
         passed_most_ms = min(self._clock.most_ms - joint.begin_most_ms, longest_ms)
-        return (id(order), joint.low_centideg, joint.high_centideg, passed_ms, passed_most_ms)
+        return (id(order), joint.low_centi, joint.high_centi, passed_ms, passed_most_ms)
 
     def _move(self, joint: int, op: Move) -> None:
-        trial, slew = self.joints[joint], self._profile.servo.slew_centideg_per_s
+        trial, slew = self.joints[joint], self._profile.servo.slew_centi_per_s
         low, high = self._place(trial)
-        way_centideg = max(op.target_centideg - low, high - op.target_centideg)
-        speed = -(-way_centideg * 1000 // op.time_ms)
-        trial.fastest_centideg_per_s = max(trial.fastest_centideg_per_s, speed)
+        way_centi = max(op.target_centi - low, high - op.target_centi)
+        speed = -(-way_centi * 1000 // op.time_ms)
+        trial.fastest_centi_per_s = max(trial.fastest_centi_per_s, speed)
         if speed > slew:
             message = f"joint {self._labels[joint]} would turn at {speed / 100:g} deg/s, at most {slew / 100:g} deg/s"
             help = f"it begins between {low / 100:g} deg and {high / 100:g} deg" if high - low > 1 else ""
             self._problems.add(_value(op.node, "over"), "E318", message, help)
-        trial.reach(op.target_centideg, op.target_centideg)
+        trial.reach(op.target_centi, op.target_centi)
         self._begin(trial, op, low, high)
 
     def _orient(self, op: Orient, chosen: Sequence[int]) -> None:
@@ -119,7 +119,7 @@ class Turning:
             message = f"the joints may be swung by {swing / 100:g} deg when orient begins, at most {most / 100:g} deg"
             self._problems.add(op.node.place, "E321", message)
         low, high = (right[0] - left[1]) // 2 - most, (right[1] - left[0] + 1) // 2 + most
-        bottom, top = servo.least_centideg, servo.most_centideg
+        bottom, top = servo.least_centi, servo.most_centi
         return (max(low, bottom), min(high, top)), (max(-high, bottom), min(-low, top))
 
     def _place(self, trial: JointTrial) -> tuple[int, int]:
@@ -127,7 +127,7 @@ class Turning:
 
     def _begin(self, trial: JointTrial, op: Move | Orient, low: int, high: int) -> None:
         """Begin a new order on one joint, in place of the one it may have."""
-        trial.low_centideg, trial.high_centideg = low, high
+        trial.low_centi, trial.high_centi = low, high
         trial.begin_ms, trial.begin_most_ms = self._clock.now_ms, self._clock.most_ms
         trial.order = op
         trial.moves += 1

@@ -26,17 +26,17 @@ class JointReport:
 
     label: str
     orders: int
-    least_centideg: int | None
-    most_centideg: int | None
-    fastest_centideg_per_s: int
+    least_centi: int | None
+    most_centi: int | None
+    fastest_centi_per_s: int
     held_ms: int
 
     @property
     def angles(self) -> str:
         """Return the range of the angles that it is told."""
-        if self.least_centideg is None or self.most_centideg is None:
+        if self.least_centi is None or self.most_centi is None:
             return ""
-        return f"{self.least_centideg / 100:.1f} .. {self.most_centideg / 100:.1f} deg"
+        return f"{self.least_centi / 100:.1f} .. {self.most_centi / 100:.1f} deg"
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,10 +109,10 @@ class Report:
 
     def _joint_fields(self) -> dict[str, object]:
         limits = self.profile.servo
-        speed = max(joint.fastest_centideg_per_s for joint in self.joints)
+        speed = max(joint.fastest_centi_per_s for joint in self.joints)
         held_ms = max(joint.held_ms for joint in self.joints)
         return {
-            "speed_centideg_per_s": {"most": speed, "limit": limits.slew_centideg_per_s},
+            "speed_centi_per_s": {"most": speed, "limit": limits.slew_centi_per_s},
             "held_ms": {"most": held_ms, "limit": limits.hold_max_ms},
         }
 
@@ -128,10 +128,10 @@ class Report:
         if not any(joint.orders for joint in self.joints):
             return
         limits = self.profile.servo
-        speed, hold = f"speed (of {limits.slew_centideg_per_s / 100:g})", f"held (of {limits.hold_max_ms / 1000:g})"
+        speed, hold = f"speed (of {limits.slew_centi_per_s / 100:g})", f"held (of {limits.hold_max_ms / 1000:g})"
         yield f"  joint orders   {'angles':<20}{speed:>18}{hold:>18}"
         for joint in self.joints:
-            figures = f"{joint.fastest_centideg_per_s / 100:12.1f} deg/s{joint.held_ms / 1000:16.2f} s"
+            figures = f"{joint.fastest_centi_per_s / 100:12.1f} deg/s{joint.held_ms / 1000:16.2f} s"
             if joint.orders:
                 yield f"  {joint.label:<6}{joint.orders:6d}   {joint.angles:<20}{figures}"
 
