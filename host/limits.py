@@ -25,7 +25,7 @@ class Coil:
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """A channel that turns a joint: its pin, and the converter's inputs of its current and position."""
+    """A channel that drives a joint: its pin, and the converter's inputs of its current and position."""
 
     KIND: ClassVar = "servo"
 
@@ -34,6 +34,14 @@ class Joint:
     pin: int
     current: int
     position: int
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A force cell: its label, and the converter's input that reads it."""
+
+    label: str
+    input: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +68,10 @@ class CoilLimits:
 
 @dataclass(frozen=True, slots=True)
 class ServoLimits:
-    """What the firmware allows each joint, and how its pulses and readings are to be understood."""
+    """What the firmware allows each joint, and how its pulses and readings are to be understood.
+
+    Positions are in hundredths of `unit`.
+    """
 
     unit: str
     least_centi: int
@@ -94,6 +105,33 @@ class OrientLimits:
 
     gain_permille_per_s: int
     swing_max_centideg: int
+
+
+@dataclass(frozen=True, slots=True)
+class LoadLimits:
+    """How the load cell is read, the largest force that may be asked for, and the force that trips."""
+
+    input: int
+    zero_counts: int
+    full_mn: int
+    most_mn: int
+    trip_mn: int
+
+
+@dataclass(frozen=True, slots=True)
+class PressLimits:
+    """How the robot regulates the force of its only joint; `touch_mn` is what it takes as touching."""
+
+    gain_um_per_s_per_n: int
+    reset_permille_per_s: int
+    touch_mn: int
+
+
+@dataclass(frozen=True, slots=True)
+class CellLimits:
+    """The pressure that a force cell reads at the converter's full range."""
+
+    full_pa: int
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,10 +19,14 @@ from typing import Any, NamedTuple, TypeVar, get_type_hints
 from host.errors import BadRequest, Mismatch
 from host.limits import (
     CameraLimits,
+    Cell,
+    CellLimits,
     Coil,
     CoilLimits,
     Joint,
+    LoadLimits,
     OrientLimits,
+    PressLimits,
     ProgramLimits,
     ServoLimits,
     SessionLimits,
@@ -30,18 +34,23 @@ from host.limits import (
 )
 
 T = TypeVar("T")
+UNITS = ("deg", "mm")  # of joints
 
 
 class Parts(NamedTuple):
     """What a robot has, by label: its channels in the order of the masks, those that are coils, those that are joints.
 
-    `cameras` is 1 where a camera sees how the object lies, else 0.
+    `cameras` is 1 where a camera sees how the object lies, else 0; so is `loads` where there is a load cell. `cells`
+    are the force cells; `unit` is that of the joints' positions, "deg" or "mm".
     """
 
     channels: tuple[str, ...] = ()
     coils: tuple[str, ...] = ()
     joints: tuple[str, ...] = ()
     cameras: int = 0
+    loads: int = 0
+    cells: tuple[str, ...] = ()
+    unit: str = "deg"
 
     def kind(self, label: str | None) -> str:
         """Return what is behind a label: `coil` or `joint`."""
@@ -68,6 +77,10 @@ class Profile:
     imu: dict[str, int] | None = None  # address of the attitude sensor, where there is one
     camera: CameraLimits | None = None
     orient: OrientLimits | None = None
+    load: LoadLimits | None = None
+    press: PressLimits | None = None
+    cells: tuple[Cell, ...] = ()
+    cell: CellLimits | None = None
 
     @property
     def coil(self) -> CoilLimits:
@@ -99,9 +112,27 @@ class Profile:
         return tuple(channel.label for channel in self.channels if isinstance(channel, Joint))
 
     @cached_property
+    def cell_labels(self) -> tuple[str, ...]:
+        """Return the labels of the force cells, in the order of what the robot tells of each."""
+        return tuple(cell.label for cell in self.cells)
+
+    @property
+    def unit(self) -> str:
+        """Return the unit of the joints' positions: `deg`, which a robot without joints has too, or `mm`."""
+        return self.servo_limits.unit if self.servo_limits else "deg"
+
+    @cached_property
     def parts(self) -> Parts:
         """Return what the robot has, by label."""
-        return Parts(self.labels, self.coil_labels, self.joint_labels, int(self.camera is not None))
+        return Parts(
+            self.labels,
+            self.coil_labels,
+            self.joint_labels,
+            cameras=int(self.camera is not None),
+            loads=int(self.load is not None),
+            cells=self.cell_labels,
+            unit=self.unit,
+        )
 
     def mask(self, names: Iterable[str]) -> int:
         """Return the bit mask of these labels or groups; BadRequest lists the known ones."""
@@ -116,7 +147,7 @@ class Profile:
         mask = self.mask(names)
         for label in self.named(mask):
             if label in self.joint_labels:
-                raise BadRequest(f"{label} is a joint, no coil: `softrig move {label} --to 8deg` turns it")
+                raise BadRequest(f"{label} is a joint, no coil: `softrig move {label} --to 8{self.unit}` moves it")
         return mask
 
     def joint_mask(self, names: Iterable[str]) -> int:
@@ -125,6 +156,16 @@ class Profile:
         for label in self.named(mask):
             if label in self.coil_labels:
                 raise BadRequest(f"{label} is a coil, no joint: `softrig fire {label}` heats it")
+        return mask
+
+    def cell_mask(self, names: Iterable[str]) -> int:
+        """Return the bit mask of these force cells, in their own order; BadRequest lists the known ones."""
+        mask = 0
+        for name in names:
+            if name not in self.cell_labels:
+                known = f"it has {' '.join(self.cell_labels)}" if self.cells else "it has none"
+                raise BadRequest(f"no force cell {_shown(name)} on {self.robot}: {known}")
+            mask |= 1 << self.cell_labels.index(name)
         return mask
 
     def named(self, mask: int) -> tuple[str, ...]:
@@ -138,10 +179,14 @@ class Profile:
     def _index(self, label: str) -> int:
         if label not in self.labels:
             groups = f", groups {' '.join(self.groups)}" if self.groups else ""
-            shown = label if label.isprintable() and label.strip() else repr(label)
             what = "channel" if self.coil_labels and self.joint_labels else "joint" if self.joint_labels else "coil"
-            raise BadRequest(f"no {what} {shown} on {self.robot}: it has {' '.join(self.labels)}{groups}")
+            raise BadRequest(f"no {what} {_shown(label)} on {self.robot}: it has {' '.join(self.labels)}{groups}")
         return self.labels.index(label)
+
+
+def _shown(label: str) -> str:
+    """Return a label as it can be printed."""
+    return label if label.isprintable() and label.strip() else repr(label)
 
 
 def read_profile(text: bytes) -> Profile:
@@ -149,13 +194,14 @@ def read_profile(text: bytes) -> Profile:
     try:
         data = json.loads(text)
         channels = tuple(_channel(entry) for entry in data["channels"])
+        cells = tuple(_taken(Cell, entry) for entry in data.get("cells", ()))
         return Profile(
             robot=str(data["robot"]),
             supply_mv=int(data["supply_mv"]),
             channels=channels,
             groups={name: tuple(labels.split()) for name, labels in data["groups"]},
             coil_limits=_needed(CoilLimits, data, "coil", any(isinstance(each, Coil) for each in channels)),
-            servo_limits=_needed(ServoLimits, data, "servo", any(isinstance(each, Joint) for each in channels)),
+            servo_limits=_servo(data, any(isinstance(each, Joint) for each in channels)),
             supply=_taken(SupplyLimits, data["supply"]),
             session=_taken(SessionLimits, data["session"]),
             program=_taken(ProgramLimits, data["program"]),
@@ -163,6 +209,10 @@ def read_profile(text: bytes) -> Profile:
             imu=data.get("imu"),
             camera=_needed(CameraLimits, data, "camera"),
             orient=_needed(OrientLimits, data, "orient"),
+            load=_needed(LoadLimits, data, "load", "press" in data),
+            press=_needed(PressLimits, data, "press"),
+            cells=cells,
+            cell=_needed(CellLimits, data, "cell", bool(cells)),
         )
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError, RecursionError) as error:
         raise Mismatch(f"the robot's profile cannot be read ({error}): its firmware is of another version") from error
@@ -175,6 +225,14 @@ def _channel(entry: dict[str, Any]) -> Coil | Joint:
     if entry["kind"] == Joint.KIND:
         return _taken(Joint, entry)
     raise ValueError(f"a channel of kind {entry['kind']!r}")
+
+
+def _servo(data: dict[str, Any], needed: bool) -> ServoLimits | None:
+    """Return the limits of the joints, None when there are none and none are needed."""
+    servo = _needed(ServoLimits, data, "servo", needed)
+    if servo is not None and servo.unit not in UNITS:
+        raise ValueError(f"joints that count in {servo.unit!r}")
+    return servo
 
 
 def _needed(kind: type[T], data: dict[str, Any], name: str, needed: bool = False) -> T | None:
