@@ -15,7 +15,7 @@ from hil_sim.devices.ntc import Ntc
 from hil_sim.faults.file import load as load_faults
 from hil_sim.faults.file import plan
 from hil_sim.faults.happening import schedule
-from hil_sim.joints import angle_input
+from hil_sim.joints import position_input
 from hil_sim.physics.hand.fingertip import HandError
 from hil_sim.robots.check import near
 from hil_sim.robots.file import PROFILES, RobotFile, RobotFileError, load
@@ -112,7 +112,7 @@ def _agree(robot: RobotFile, profile: bytes) -> None:
     wiring = robot.wiring
     wired: list[tuple[str, tuple[Any, ...]]] = [(label, wiring.outputs[label]) for label in robot.labels]
     count = len(robot.joints)
-    wired += [(label, (wiring.pins[label], i, angle_input(i, count))) for i, label in enumerate(robot.joints)]
+    wired += [(label, (wiring.pins[label], i, position_input(i, count))) for i, label in enumerate(robot.joints)]
     if rows != wired:
         odd = [label for label, _ in dict.fromkeys([row for row in [*wired, *rows] if (row in wired) != (row in rows)])]
         which = " ".join(dict.fromkeys(odd)) or "their order"

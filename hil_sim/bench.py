@@ -14,7 +14,7 @@ Several robots live in lock-step on one clock, and on one CAN bus, when each ben
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,6 +63,14 @@ class Plant(Protocol):
 
     def snapshot(self) -> dict[str, Any]:
         """Return the shape, for pictures."""
+
+
+@runtime_checkable
+class Meshed(Protocol):
+    """A body that is a mesh of triangles."""
+
+    def fields(self) -> dict[str, Any]:
+        """Return the mesh, and displacement, strain and stress on it."""
 
 
 @dataclass(frozen=True)
@@ -168,7 +176,7 @@ class Bench:
     @property
     def any_joint_driven(self) -> bool:
         """Whether any joint is told to go anywhere: it is limp else."""
-        return any(joint.deg is not None for joint in self.joints)
+        return any(joint.position is not None for joint in self.joints)
 
     @property
     def crashes(self) -> list[Crash]:
@@ -205,6 +213,10 @@ class Bench:
         for label, coil in coils.items():
             coil["duty"] = self.coil_gate(label)
         return seen
+
+    def fields(self) -> dict[str, Any] | None:
+        """Return displacement, strain and stress of a body that is a mesh, None of one that is not."""
+        return self.plant.fields() if isinstance(self.plant, Meshed) else None
 
     def watch(self, glance: Callable[[int], None]) -> None:
         """Have `glance` called with virtual time in ms whenever the body has reached a point of its grid."""

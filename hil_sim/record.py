@@ -36,27 +36,27 @@ class CoilRecord:
 
 @dataclass
 class JointRecord:
-    """One joint's history. `deg` is where its servo is told to go: None while it is limp."""
+    """One joint's history. `position` is where its servo is told to go, in its unit: None while it is limp."""
 
     label: str
-    deg: float | None = None
+    position: float | None = None
     history: list[tuple[int, float | None]] = field(default_factory=list)  # time_us, command from then on
     driven_at_us: int | None = None  # last time it was driven after it had been limp
     peak_a: float = 0.0
     _driven_us: int = 0
 
-    def command(self, deg: float | None, now_us: int) -> None:
+    def command(self, position: float | None, now_us: int) -> None:
         """Note a new command."""
-        if deg == self.deg:
+        if position == self.position:
             return
-        if self.deg is None:
+        if self.position is None:
             self.driven_at_us = now_us
-        elif deg is None:
+        elif position is None:
             self._driven_us = self.driven_us(now_us)
-        self.deg = deg
-        self.history.append((now_us, deg))
+        self.position = position
+        self.history.append((now_us, position))
 
     def driven_us(self, now_us: int) -> int:
         """Return how long it has been driven in all."""
-        running_us = now_us - self.driven_at_us if self.deg is not None and self.driven_at_us is not None else 0
+        running_us = 0 if self.position is None or self.driven_at_us is None else now_us - self.driven_at_us
         return self._driven_us + running_us

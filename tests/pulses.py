@@ -41,7 +41,7 @@ class Pulses:
     def _find(self, now_us: int) -> None:
         joints = self._bench._joints
         if joints is not None and self._servo in joints._servos:
-            self.found[now_us] = float(self._bench.plant.joint_deg[joints._servos.index(self._servo)])
+            self.found[now_us] = float(self._bench.plant.joint_position[joints._servos.index(self._servo)])
 
     def angles(self, limits: ServoLimits) -> list[tuple[int, float]]:
         """Return from when on it was told which angle [deg]."""

@@ -195,9 +195,9 @@ def test_the_usual_variables_of_any_robot_are_as_long_as_its_profile_says(tmp_pa
     rig.say(messages.SUBSCRIBE, slot=0, period_ms=50, on_change=0, variables=b"")
     rig.run(100)
 
-    counts = len(rig.profile.coils), len(rig.profile.joints), 1 if rig.profile.camera else 0
+    counts = variables.parts(len(rig.profile.coils), len(rig.profile.joints), 1 if rig.profile.camera else 0)
     record = next(body for kind, body in rig.got if kind == "telemetry")
-    values = variables.unpack(variables.USUAL, variables.veiled(record.values), *counts)
+    values = variables.unpack(variables.USUAL, variables.veiled(record.values), counts)
     told = dict(zip(variables.USUAL, values, strict=True))
 
     assert told[variables.number("state")] == messages.IDLE
@@ -302,4 +302,4 @@ def test_a_robot_is_armed_again_while_its_servos_still_slacken():
     rig.robot.arm()
 
     assert rig.robot.status().state == "armed"
-    assert all(joint.deg is None for joint in rig.bench.joints)
+    assert all(joint.position is None for joint in rig.bench.joints)

@@ -36,7 +36,7 @@ def bench():
 
 
 def angle_deg(bench, joint=0):
-    return float(bench.plant.joint_deg[joint])
+    return float(bench.plant.joint_position[joint])
 
 
 def camera(bench):
@@ -74,14 +74,14 @@ def test_a_servo_without_torque_is_pushed_away_by_the_other(bench):
 
 def test_a_potentiometer_that_is_cut_off_reads_0_and_its_neighbours_what_they_did(bench):
     bench.run(1.0)
-    counts = [bench.board.adc.counts(8 + channel) for channel in range(4)]
+    counts = [bench.board.adc.counts(channel) for channel in range(4)]
     happening = schedule(bench, 1_000_000, "pot-open:L")
 
     bench.run(0.001)
 
-    assert [bench.board.adc.counts(8 + channel) for channel in range(4)] == [*counts[:3], 0]
+    assert [bench.board.adc.counts(channel) for channel in range(4)] == [*counts[:3], 0]
     happening.mend()
-    assert bench.board.adc.counts(8 + 3) == counts[3]
+    assert bench.board.adc.counts(3) == counts[3]
 
 
 def test_a_camera_that_is_lost_does_not_answer_until_it_is_mended(bench):

@@ -31,8 +31,8 @@ class FakeHand(FakePlant):
 
     def __init__(self):
         super().__init__("")
-        self.joints = ["R", "L"]
-        self.joint_deg = np.zeros(2)
+        self.joints, self.joint_unit = ["R", "L"], "deg"
+        self.joint_position = np.zeros(2)
         self.joint_current_a = np.full(2, 0.005)
         self.object_deg = None
         self.told = []
@@ -43,7 +43,7 @@ class FakeHand(FakePlant):
     def advance(self, duration_us, coil_power_w):
         super().advance(duration_us, coil_power_w)
         for index, degree in enumerate(self.told[-1] if self.told else ()):
-            self.joint_deg[index] = self.joint_deg[index] if degree is None else degree
+            self.joint_position[index] = self.joint_position[index] if degree is None else degree
             self.joint_current_a[index] = 0.005 if degree is None else 1.0 + index
 
 
@@ -101,7 +101,7 @@ def test_servos_load_the_rail_and_the_monitor_sees_it(bench):
 def test_the_converter_reads_currents_and_then_angles(bench):
     bench.run(0.19)
 
-    counts = [bench.board.adc.counts(8 + channel) for channel in range(5)]
+    counts = [bench.board.adc.counts(channel) for channel in range(5)]
 
     right, left = 2048 + 18.2 * 9, 2048 - 18.2 * 9
     assert counts == pytest.approx([0.5 / 3.3 * 4096, 1.0 / 3.3 * 4096, right, left, 0], abs=1)

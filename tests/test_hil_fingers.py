@@ -55,7 +55,7 @@ def run(script, address, *parameters):
     """Run a script and return all that was seen of it."""
     link, rows = open_link(address), []
     bench = link.bench
-    bench.watch(lambda _: rows.append(Row(tuple(each.deg for each in bench.joints), bench.plant.observe())))
+    bench.watch(lambda _: rows.append(Row(tuple(each.position for each in bench.joints), bench.plant.observe())))
     with Robot(link) as robot:
         robot.connect()
         program = compile_script(load(script), robot.profile, parameters).program

@@ -40,7 +40,12 @@ class FingersPlant:
         self._torque_peak = np.abs(self._hand.motor)
 
     @property
-    def joint_deg(self) -> Array:
+    def joint_unit(self) -> str:
+        """Joints are counted in degrees."""
+        return "deg"
+
+    @property
+    def joint_position(self) -> Array:
         """Angles of the joints [deg]."""
         return np.degrees(self._hand.q)
 
@@ -54,9 +59,9 @@ class FingersPlant:
         """Orientation of the object [deg]."""
         return degrees(self._hand.pose[2])
 
-    def command(self, degrees: Sequence[float | None]) -> None:
-        """Tell each servo where to go from now on; None: it is limp."""
-        self._commands = [nan if degree is None else radians(degree) for degree in degrees]
+    def command(self, positions: Sequence[float | None]) -> None:
+        """Tell each servo to which angle [deg] to go from now on; None: it is limp."""
+        self._commands = [nan if degree is None else radians(degree) for degree in positions]
 
     def advance(self, duration_us: int, coil_power_w: Array) -> None:
         """Let time pass; OutOfModel when a tip is pressed beyond what its model is valid for."""

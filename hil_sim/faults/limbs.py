@@ -10,7 +10,7 @@ from typing import Protocol, runtime_checkable
 from hil_sim.bench import Bench
 from hil_sim.devices.anglecamera import AngleCamera
 from hil_sim.faults.parts import Mend, Mishap, Value
-from hil_sim.joints import Jointed, angle_input
+from hil_sim.joints import Jointed, position_input
 
 
 @runtime_checkable
@@ -49,7 +49,7 @@ def servo_dead(_bench: Bench, body: Breakable, label: str, dead: bool) -> None:
 
 def pot_open(bench: Bench, body: Breakable, label: str, broken: bool) -> None:
     """Break the wire of a joint's potentiometer: its input is pulled to ground."""
-    channel = angle_input(list(body.joints).index(label), len(body.joints))
+    channel = position_input(list(body.joints).index(label), len(body.joints))
     (bench.board.adc.opened.add if broken else bench.board.adc.opened.discard)(channel)
 
 
