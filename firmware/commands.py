@@ -29,6 +29,7 @@ class Commands:
             (messages.START, self._start), (messages.CANCEL, self._cancel), (messages.COILS_REQUEST, self._coils),
             (messages.CALIBRATE, self._calibrate), (messages.SERVICE, self._service),
             (messages.MOVE, self._move), (messages.ORIENT, self._orient),
+            (messages.PRESS, self._press),
         ) + core.records.orders()  # fmt: skip
 
     def serve(self, received) -> None:
@@ -116,6 +117,8 @@ class Commands:
             raise Refused(codes.NO_CAMERA)
         if self.upload.needs_loop and not limbs.orient:
             raise Refused(codes.NO_CAMERA)
+        if (self.upload.needs_load and not (limbs and limbs.load)) or (self.upload.needs_press and not limbs.press):
+            raise Refused(codes.NO_LOAD_CELL)
 
     def _begin(self) -> None:
         self._begins = NOT
@@ -197,6 +200,10 @@ class Commands:
 
     def _orient(self, order, seq: int) -> None:
         self._ready_limbs().turn(order.target_centideg, order.time_ms, order.hold_ms, self._core.now_ms)
+
+    def _press(self, order, seq: int) -> None:
+        limbs = self._ready_limbs()
+        limbs.push(order.target_mn, order.over_ms, order.time_ms, order.hold_ms, self._core.now_ms)
 
     def _ready_limbs(self):
         """Return what turns joints, or raise Refused: not now, or this robot has none."""

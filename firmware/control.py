@@ -113,7 +113,7 @@ class Control:
     def _drive_limbs(self, now_ms: int, powered: bool) -> int:
         code = self.limbs.drive(now_ms, powered)
         self.guard.joints_draw = self.limbs.may_draw(now_ms)
-        return code and self.guard.fault(code, self.limbs.sense.value, self.limbs.sense.channel)
+        return code and self.guard.fault(code, self.limbs.value, self.limbs.channel)
 
     def _measure(self) -> int:
         """Go on with the self-test, whose findings refuse the arming, or with the patrol, whose findings trip."""

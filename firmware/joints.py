@@ -85,6 +85,11 @@ class Joints:
                 else:
                     self._servos[joint].pulse(self._limits.width_ns(centi))
 
+    def pushing(self, joint: int) -> bool:
+        """Return whether a joint is driven and not on its way back to a smaller position."""
+        commanded_centi = self.commanded_centi[joint]
+        return commanded_centi != LIMP and commanded_centi <= self._target_centi[joint]
+
     def moving(self, now_ms: int) -> bool:
         """Return whether a joint is still on its way."""
         for joint in range(self.count):

@@ -46,7 +46,7 @@ class Player:
         self._acts = (
             self._halt, self._fire, self._fire, self._delay, self._repeat,
             self._next, self._wait, self._guard, self._name, self._off, self._aim, self._aimed,
-            self._move, self._orient,
+            self._move, self._orient, self._press,
         )  # fmt: skip
 
     def load(self, code: bytes, now_ms: int) -> None:
@@ -187,6 +187,12 @@ class Player:
         self._limbs.play_turn(program.signed(code, at + 1), program.number(code, at + 3, 2), self._cursor_ms)
         return self._go_on()
 
+    def _press(self, now_ms: int) -> int:
+        code, at = self.code, self._at
+        target_mn, over_ms = program.number(code, at + 1, 2), program.number(code, at + 3, 2)
+        self._limbs.play_push(target_mn, over_ms, program.number(code, at + 5, 4), self._cursor_ms)
+        return self._go_on()
+
     def _go_on(self) -> int:
         self._at += program.SIZES[self.code[self._at]]
         return -1
@@ -205,8 +211,8 @@ class Player:
         self._sources[place] = source
         self._quantifiers[place] = code[at + 1] & 15
         self._compares[place] = code[at + 1] >> 4
-        of_channels = source in program.OF_COILS or source in program.OF_JOINTS
-        self._masks[place] = program.number(code, at + 4, 4) if of_channels else 0
+        of_many = source in program.OF_COILS or source in program.OF_JOINTS or source in program.OF_CELLS
+        self._masks[place] = program.number(code, at + 4, 4) if of_many else 0
         self._values[place] = value
         self._readings[place] = None
         if source == program.TEMPERATURE:
@@ -217,6 +223,8 @@ class Player:
             joints = self._limbs.joints
             self._masks[place] >>= joints.first
             self._readings[place] = joints.measured_centi if source == program.POSITION else joints.current_ma
+        elif source in program.OF_CELLS:
+            self._readings[place] = self._limbs.cells.pressure_pa
 
     def _keep_readings(self, place: int, readings: array, unit: int) -> None:
         """Have a condition look at these; what is a fraction of a unit above its value does not count."""
@@ -268,4 +276,6 @@ class Player:
             return self._attitude.pitch_decideg()
         if source == program.ORIENTATION:
             return self._limbs.camera.centideg
+        if source == program.FORCE:
+            return self._limbs.load.force_mn
         return self._sense.board_decidegc

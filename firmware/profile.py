@@ -13,6 +13,13 @@ SLEW_MAX_CENTI_PER_S = 1_000_000
 HOLD_MAX_MS = 1 << 24
 UA_PER_COUNT_MAX = 16_000  # 4095 counts are told as 65535 mA at most
 COUNTS_MAX = 4095
+UNITS = ("deg", "mm")  # of a joint; its positions are counted in hundredths of it
+EDGE_COUNTS = 8  # at either end of the converter's range: a load cell that reads these is none
+FORCE_MAX_MN = 100_000
+PRESSURE_MAX_PA = 32_767  # a condition compares no more
+CELLS_MAX = 14
+PRESS_GAIN_MAX = 10_000  # um/s for a newton: beyond it the loop's integers would not stay small
+RESET_MAX = 20_000
 WAY_MIN_COUNTS = 1000  # of a potentiometer: less would make angles of its noise
 # What stands for the coil of a robot that has none: no order reaches it.
 NO_COIL = {
@@ -64,11 +71,25 @@ class Profile:
         self.orient = OrientLimits(data["orient"]) if "orient" in data else None
         if len(self.joints) < (2 if self.orient else 1 if self.camera else 0):
             raise ValueError("a camera is of a robot with joints, and the loop of one with two joints")
+        self.load = LoadLimits(data["load"]) if "load" in data else None
+        self.press = PressLimits(data["press"]) if "press" in data else None
+        self.cells = [row["input"] for row in data.get("cells", ())]
+        self.cell_full_pa = data["cell"]["full_pa"] if self.cells else 0
+        self._check_forces()
         self.supply = Supply(data["supply"], data["supply_mv"])
         self.lease_ms = data["session"]["lease_ms"]
         self.lease_max_ms = data["session"]["lease_max_ms"]
         self.program_bytes_max = data["program"]["bytes_max"]
         self.imu_address = data["imu"]["address"] if "imu" in data else 0  # of the attitude sensor, 0: has none
+
+    def _check_forces(self) -> None:
+        """Raise ValueError for cells that cannot be read, or a press that is none."""
+        if not self.joints and (self.load or self.cells):
+            raise ValueError("load cell and force cells are of a robot with joints")
+        if self.press and not (self.load and len(self.joints) == 1 and self.servo.unit == "mm"):
+            raise ValueError("a press has a load cell and one joint, in mm")
+        if not 0 <= self.cell_full_pa <= PRESSURE_MAX_PA or len(self.cells) > CELLS_MAX:
+            raise ValueError(f"at most {CELLS_MAX} cells of {PRESSURE_MAX_PA} Pa")
 
 
 class CoilLimits:
@@ -99,6 +120,7 @@ class ServoLimits:
     """What a joint may be told, and how its servo and the converter read."""
 
     def __init__(self, data: dict) -> None:
+        self.unit = data["unit"]
         self.least_centi = data["least_centi"]
         self.most_centi = data["most_centi"]
         self.slew_centi_per_s = data["slew_centi_per_s"]
@@ -130,6 +152,7 @@ class ServoLimits:
         """Raise ValueError where a number on the way would be too large for its place, or a pulse no pulse."""
         half_centi = self._span_centi // 2
         for name, fits in (
+            ("unit", self.unit in UNITS),
             ("span_centi", 0 < self._span_centi <= SPAN_MAX_CENTI and self._span_centi % 100 == 0),
             ("least_centi", -half_centi <= self.least_centi < self.most_centi),
             ("most_centi", self.most_centi <= half_centi),
@@ -161,6 +184,36 @@ class OrientLimits:
         if not 0 < self.gain_permille_per_s <= GAIN_MAX_PERMILLE_PER_S:
             raise ValueError(f"gain {self.gain_permille_per_s} permille/s, 1 to {GAIN_MAX_PERMILLE_PER_S}")
         self.swing_max_centideg = data["swing_max_centideg"]
+
+
+class LoadLimits:
+    """Where the load cell is read, what its counts mean, and what it may bear."""
+
+    def __init__(self, data: dict) -> None:
+        self.input = data["input"]
+        self.most_mn = data["most_mn"]
+        self.trip_mn = data["trip_mn"]
+        self._zero_counts = data["zero_counts"]
+        self._full_mn = data["full_mn"]
+        if not 0 < self._full_mn <= FORCE_MAX_MN or not EDGE_COUNTS < self._zero_counts < COUNTS_MAX - EDGE_COUNTS:
+            raise ValueError(f"load: zero_counts or full_mn (at most {FORCE_MAX_MN}) is none of a converter")
+        if not 0 < self.most_mn <= self.trip_mn < self.force_mn(COUNTS_MAX - EDGE_COUNTS):
+            raise ValueError("load: most_mn, trip_mn and the end of its range come one after the other")
+
+    def force_mn(self, counts: int) -> int:
+        """Return the force at which the converter reads so many counts."""
+        return (counts - self._zero_counts) * self._full_mn >> 12
+
+
+class PressLimits:
+    """How the force of a press is regulated."""
+
+    def __init__(self, data: dict) -> None:
+        self.gain_um_per_s_per_n = data["gain_um_per_s_per_n"]
+        self.reset_permille_per_s = data["reset_permille_per_s"]
+        self.touch_mn = data["touch_mn"]
+        if not 0 < self.gain_um_per_s_per_n <= PRESS_GAIN_MAX or not 0 <= self.reset_permille_per_s <= RESET_MAX:
+            raise ValueError(f"press: a gain of 1 to {PRESS_GAIN_MAX} and a reset of 0 to {RESET_MAX}")
 
 
 class Supply:

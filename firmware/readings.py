@@ -19,7 +19,7 @@ class Readings:
             self._current, self._board, self._roll, self._pitch, self._down, self._dropped, self._resent,
             self._overruns, self._duties, self._temperatures, self._heats, self._resistances, self._martensites,
             self._least, self._most, self._can_state, self._can_overflows, self._can_refused, self._can_bus_offs,
-            self._joint_angles, self._commanded, self._joint_currents, self._object,
+            self._joint_positions, self._commanded, self._joint_currents, self._object, self._load, self._cells,
         )  # fmt: skip
         self._core = core
         self._channels, self._sense, self._attitude = core.channels, core.sense, core.attitude
@@ -46,8 +46,12 @@ class Readings:
     def _of_joints(self) -> bytes:
         joints = self._limbs.joints
         told = bytes(joints.measured_centi) + bytes(joints.commanded_centi) + bytes(joints.current_ma)
-        camera = self._limbs.camera
-        return told + struct.pack("<h", camera.object_centideg()) if camera else told
+        camera, load, cells = self._limbs.camera, self._limbs.load, self._limbs.cells
+        if camera:
+            told += struct.pack("<h", camera.object_centideg())
+        if load:
+            told += struct.pack("<i", load.force_mn)
+        return told + bytes(cells.pressure_pa) if cells else told
 
     def _state(self, values: list) -> None:
         values.append(self._core.state)
@@ -132,7 +136,7 @@ class Readings:
     def _can_bus_offs(self, values: list) -> None:
         values.append(self._core.can.bus_offs & 0xFFFF if self._core.can else 0)
 
-    def _joint_angles(self, values: list) -> None:
+    def _joint_positions(self, values: list) -> None:
         if self._limbs:
             values.extend(self._limbs.joints.measured_centi)
 
@@ -147,3 +151,11 @@ class Readings:
     def _object(self, values: list) -> None:
         if self._limbs and self._limbs.camera:
             values.append(self._limbs.camera.object_centideg())
+
+    def _load(self, values: list) -> None:
+        if self._limbs and self._limbs.load:
+            values.append(self._limbs.load.force_mn)
+
+    def _cells(self, values: list) -> None:
+        if self._limbs and self._limbs.cells:
+            values.extend(self._limbs.cells.pressure_pa)

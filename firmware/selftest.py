@@ -2,8 +2,9 @@
 
 One look per control step, one coil at a time, for about 2 ms each. With the supply open no current may flow through an
 output that is on (else its switch is welded); with the supply on and every output off none either (else a MOSFET is
-stuck); then each coil's resistance must be in its band, and each joint's angle one that its potentiometer gives. The
-first that is not ends the test with everything off. A robot without coils has nothing to see a welded switch by.
+stuck); then each coil's resistance must be in its band, each joint's position one that its potentiometer gives, and a
+load cell be there. The first that is not ends the test with everything off. A robot without coils has nothing to see a
+welded switch by.
 """
 
 from firmware.sense import STRAY_MA
@@ -94,10 +95,13 @@ class SelfTest:
 
     def _look_at_joints(self) -> None:
         channel = self._limbs.broken_channel() if self._limbs else NO_JOINT
-        if channel == NO_JOINT:
-            self._finish()
-        else:
+        load = self._limbs.load if self._limbs else None
+        if channel != NO_JOINT:
             self._fail(codes.JOINT, channel, self._limbs.sense.counts(channel))
+        elif load and load.broken:
+            self._fail(codes.LOAD_CELL, self._channels.count, load.counts)
+        else:
+            self._finish()
 
     def _judge(self, channel: int, mohm: int, supply_mv: int) -> None:
         is_cold = self._sense.temperature_millidegc[channel] < self._cold_millidegc

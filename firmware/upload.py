@@ -16,6 +16,7 @@ class Upload:
         self.code = bytearray(0)
         self.outlives_host = False  # it runs on when the lease runs out
         self.needs_attitude = self.needs_camera = self.needs_loop = False  # as the verification found
+        self.needs_load = self.needs_press = False
         self.request = -1  # number of the start that waits for the verification, -1: none
         self._profile = profile
         self._header = None
@@ -54,7 +55,8 @@ class Upload:
             raise Refused(codes.BAD_CODE, 255, len(self.code))
         try:
             profile = self._profile
-            self._check = Check(self.code, len(profile.coils), profile.program_bytes_max, len(profile.joints))
+            counts = len(profile.joints), len(profile.cells)
+            self._check = Check(self.code, len(profile.coils), profile.program_bytes_max, *counts)
         except program.BadProgram as bad:
             raise Refused(codes.BAD_CODE, 255, bad.at) from None
         self.request = request
@@ -68,4 +70,6 @@ class Upload:
         self.needs_attitude = self._check.needs_attitude
         self.needs_camera = self._check.needs_camera
         self.needs_loop = self._check.needs_loop
+        self.needs_load = self._check.needs_load
+        self.needs_press = self._check.needs_press
         return done

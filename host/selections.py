@@ -88,7 +88,7 @@ class Selections:
         if asked is None and row.form != USUAL_FORM:
             return None
         numbers = asked.numbers if asked else variables.USUAL
-        values = variables.unpack(numbers, variables.veiled(row.values), *_counts(parts))
+        values = variables.unpack(numbers, variables.veiled(row.values), _counts(parts))
         if not slot.counted(row.count, row.now_ms, asked.period_ms if asked and not asked.on_change else 0):
             return None
         if numbers == variables.USUAL:
@@ -132,9 +132,9 @@ class _Slot:
         return True
 
 
-def _counts(parts: Parts) -> tuple[int, int, int]:
-    """Return of how many coils, joints and cameras a record tells."""
-    return len(parts.coils), len(parts.joints), parts.cameras
+def _counts(parts: Parts) -> variables.Parts:
+    """Return of how many of what a robot has a record tells."""
+    return variables.Parts(len(parts.coils), len(parts.joints), parts.cameras, parts.loads, len(parts.cells))
 
 
 def _nearest(name: str) -> str:

@@ -196,14 +196,14 @@ CODES = (
         "Start the program at a time of the robot's clock instead.",
     ),
     Code(
-        codes.RANGE_LIMIT, "R31", "centideg",
-        "The angle is outside the joint's range, or both joints are swung too far for `orient` to begin.",
+        codes.RANGE_LIMIT, "R31", "centi",
+        "The position is outside the joint's range, or both joints are swung too far for `orient` to begin.",
         NOTHING,
-        "Ask for an angle within it; the limits are in the robot's profile.",
+        "Ask for one within it; the limits are in the robot's profile.",
     ),
     Code(
-        codes.SLEW_LIMIT, "R32", "centideg/s",
-        "The joint would have to turn faster than it may.",
+        codes.SLEW_LIMIT, "R32", "centi/s",
+        "The joint would have to go faster than it may.",
         NOTHING,
         "Give it more time.",
     ),
@@ -218,6 +218,18 @@ CODES = (
         "An object can only be turned by joints that hold it, and one of them is limp.",
         NOTHING,
         "Move both joints first, so that they grip the object.",
+    ),
+    Code(
+        codes.NO_LOAD_CELL, "R35", "",
+        "The force on a load cell is asked for or to be regulated, and this robot has none, or no press.",
+        NOTHING,
+        "Move the joint to a position instead.",
+    ),
+    Code(
+        codes.FORCE_LIMIT, "R36", "mN",
+        "The force is beyond what may be asked of the press.",
+        NOTHING,
+        "Ask for less; the limit is in the robot's profile.",
     ),
     Code(
         codes.STOP, "F01", "",
@@ -382,10 +394,22 @@ CODES = (
         "Check the camera, its bus and its view of the object.",
     ),
     Code(
-        codes.ASTRAY, "F28", "centideg",
+        codes.ASTRAY, "F28", "centi",
         "A joint stands elsewhere than it was told, for too long: its servo gives no torque, or too little.",
         ALL_OFF,
         "Check the servo, its gear, its horn and its supply, then `softrig clear`.",
+    ),
+    Code(
+        codes.OVERLOAD, "F29", "mN",
+        "The force on the load cell went beyond its limit.",
+        ALL_OFF + " The axis of a press stays where it is: its screw holds it.",
+        "Find out what was in the way; `softrig clear`, arm and move the axis back.",
+    ),
+    Code(
+        codes.LOAD_CELL, "F30", "counts",
+        "The load cell reads the end of its range: it is torn off, or pulled or pressed far beyond it.",
+        FOUND,
+        "Check the load cell's wire, its amplifier and the converter, then `softrig clear`.",
     ),
 )  # fmt: skip
 

@@ -270,17 +270,24 @@ START = Message(
 CANCEL = Message(0x23, "cancel")  # Ends the running program: all coils off, joints hold, still armed.
 
 MOVE = Message(
-    0x24, "move",  # Turn joints to an angle on a straight line, then hold them there; the order carries its own end.
+    0x24, "move",  # Bring joints to a position on a straight line, then hold them there; the order carries its own end.
     Field("joints", "I"),  # Bit mask of channels in the order of the profile.
-    Field("target_centi", "h"),  # Where to.
+    Field("target_centi", "h"),  # Where to, in hundredths of the joint's unit, which the profile names.
     Field("over_ms", "H"),  # How long they are to take.
-    Field("hold_ms", "H"),  # Limp again after this long there unless driven anew.
+    Field("hold_ms", "I"),  # Limp again after this long there unless driven anew.
 )  # fmt: skip
 ORIENT = Message(
     0x25, "orient",  # Turn the object that both joints grip, by its angle as the camera sees it, then hold.
     Field("target_centideg", "h"),  # The object's angle.
     Field("time_ms", "H"),  # How long the robot regulates it.
-    Field("hold_ms", "H"),  # Both joints limp again after this long unless driven anew.
+    Field("hold_ms", "I"),  # Both joints limp again after this long unless driven anew.
+)  # fmt: skip
+PRESS = Message(
+    0x26, "press",  # Press with a force, by what the load cell reads, then hold the axis where it stands.
+    Field("target_mn", "H"),  # The force, reached on a straight line from the present one.
+    Field("over_ms", "H"),  # How long it is to take to reach it.
+    Field("time_ms", "I"),  # How long the robot regulates it, that included.
+    Field("hold_ms", "I"),  # The joint limp again after this long unless driven anew.
 )  # fmt: skip
 
 OK = Message(
@@ -383,7 +390,7 @@ MESSAGES = (
     HELLO, IDENTITY, DICTIONARY, DICTIONARY_PAGE, STOPPED, NAK, SYNC, WATCH,
     ALIVE, ARM, DISARM, CLEAR, FIRE, STATUS_REQUEST, SUBSCRIBE,
     FAULTS_REQUEST, CLEAR_FAULTS, SETTINGS_REQUEST, SET, CALIBRATE, COILS_REQUEST, SERVICE, CLOCK_REQUEST,
-    PROGRAM, CODE, START, CANCEL, MOVE, ORIENT, OK, REFUSED, STATUS, FAULTS, SETTINGS, COILS, EVENT, TELEMETRY,
+    PROGRAM, CODE, START, CANCEL, MOVE, ORIENT, PRESS, OK, REFUSED, STATUS, FAULTS, SETTINGS, COILS, EVENT, TELEMETRY,
     BEACON, BEACON_COILS, CLOCK,
 )  # fmt: skip
 

@@ -11,22 +11,25 @@ from binascii import crc32
 from collections import namedtuple
 
 HALT, FIRE, RAMP, DELAY, REPEAT, NEXT, WAIT, GUARD, STEP, OFF, AIM, AIMED = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11
-MOVE, ORIENT = 12, 13
+MOVE, ORIENT, PRESS = 12, 13, 14
 NAMES = (
     "halt", "fire", "ramp", "delay", "repeat", "next", "wait", "guard", "step", "off", "aim", "aimed", "move", "orient",
+    "press",
 )  # fmt: skip
-SIZES = (1, 11, 13, 5, 3, 1, 14, 9, 3, 5, 11, 10, 9, 5)
+SIZES = (1, 11, 13, 5, 3, 1, 14, 9, 3, 5, 11, 10, 9, 5, 9)
 
 # Bytes of each argument, below 0 where it is signed, of the ops that hold nothing but numbers.
 ARGUMENTS = {
     FIRE: (4, 2, 2, 2), RAMP: (4, 2, 2, 2, 2), DELAY: (4,), REPEAT: (2,), STEP: (2,), OFF: (4,),
     AIMED: (1, 2, 2, 2, 2), MOVE: (4, -2, 2), ORIENT: (-2, 2),
+    PRESS: (2, 2, 4),
 }  # fmt: skip
 
 TEMPERATURE, CURRENT, VOLTAGE, BOARD, HEAT, ROLL, PITCH, DOWN = 1, 2, 3, 4, 5, 6, 7, 8  # sources of a condition
-POSITION, LOAD, ORIENTATION = 9, 10, 11
+POSITION, LOAD, ORIENTATION, FORCE, PRESSURE = 9, 10, 11, 12, 13
 OF_COILS = (TEMPERATURE, HEAT, DOWN)  # those that ask about the coils of the mask
 OF_JOINTS = (POSITION, LOAD)  # and about the joints of the mask
+OF_CELLS = (PRESSURE,)  # and about the force cells of the mask, in the order of the profile
 OF_ATTITUDE = (ROLL, PITCH, DOWN)
 ANY, ALL, CHOSEN = 0, 1, 2  # CHOSEN: the mask is the number of the place that holds an aimed coil
 BELOW, ABOVE = 0, 1
@@ -111,13 +114,18 @@ def aimed(place: int, duty_permille: int, time_ms: int, cutoff_decidegc: int = 0
 
 
 def move(mask: int, target_centi: int, over_ms: int) -> bytes:
-    """Turn these joints to an angle within that time and hold them there; does not wait."""
+    """Bring these joints to a position within that time and hold them there; does not wait."""
     return _op(MOVE, (mask, 4), (target_centi & 0xFFFF, 2), (over_ms, 2))
 
 
 def orient(target_centideg: int, time_ms: int) -> bytes:
     """Regulate the angle of the gripped object for that time, then hold; does not wait."""
     return _op(ORIENT, (target_centideg & 0xFFFF, 2), (time_ms, 2))
+
+
+def press(target_mn: int, over_ms: int, time_ms: int) -> bytes:
+    """Regulate the force of the press, which reaches its target within `over_ms`, for that time; does not wait."""
+    return _op(PRESS, (target_mn, 2), (over_ms, 2), (time_ms, 4))
 
 
 def halt() -> bytes:

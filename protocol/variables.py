@@ -1,20 +1,23 @@
 """The table of variables: what a subscription may ask for, and a record of telemetry carries.
 
 A variable is a name, whose end is the unit, and a struct letter; behind it a `*` stands for one value for each coil, a
-`+` for one for each joint, in the order of the robot's channels, and an `@` for one where the robot has a camera and
-none where it has not. Its number is its place in the table. A record holds the values one after the other
+`+` for one for each joint, in the order of the robot's channels, an `@` for one where the robot has a camera and none
+where it has not, a `!` for one where it has a load cell, and a `#` for one for each force cell. Its number is its place
+in the table. A record holds the values one after the other
 in the order in which they were asked for, little endian, no padding; what one means is the comment beside it. On the
 line they are veiled: a coil that is off is all zeros, and on a small board each zero costs more to stuff than the rest.
 
     numbers = [number("state"), number("coil_decidegc")]
-    size(numbers, coils=8)
-    state, coil_decidegc = unpack(numbers, veiled(values), coils=8)
+    size(numbers, parts(coils=8))
+    state, coil_decidegc = unpack(numbers, veiled(values), parts(coils=8))
 """
 
 import struct
 from collections import namedtuple
 
 Variable = namedtuple("Variable", ("name", "letter"))
+Parts = namedtuple("Parts", ("coils", "joints", "cameras", "loads", "cells"))  # how many of each a robot has
+MARKS = "*+@!#"  # behind the letter of a variable of each of them
 
 VARIABLES = (
     Variable("state", "B"),  # State of the robot. [STATES]
@@ -43,10 +46,12 @@ VARIABLES = (
     Variable("can_overflows", "H"),  # Times that CAN frames to the robot were lost unread, modulo 65536.
     Variable("can_refused", "H"),  # Frames of the robot for which CAN had no room, modulo 65536.
     Variable("can_bus_offs", "H"),  # Looks, ten a second, that found the robot off the bus by errors, modulo 65536.
-    Variable("joint_centi", "h+"),  # Angle of the joint as measured.
-    Variable("commanded_centi", "h+"),  # Angle that the joint is told to go to, -32768: it is limp.
+    Variable("joint_centi", "h+"),  # Position of the joint as measured, in hundredths of its unit.
+    Variable("commanded_centi", "h+"),  # Position that it is told to go to, -32768: it is limp.
     Variable("joint_ma", "H+"),  # Current of the joint's servo.
     Variable("object_centideg", "h@"),  # Angle of the gripped object as the camera sees it, -32768: not known.
+    Variable("load_mn", "i!"),  # Force on the load cell, positive where it is pressed.
+    Variable("cell_pa", "H#"),  # Pressure on the force cell.
 )
 
 
@@ -58,30 +63,35 @@ def number(name: str) -> int:
     return -1
 
 
-def layout(numbers, coils: int, joints: int = 0, cameras: int = 0) -> str:
-    """Return the struct format of a record of these variables of a robot with so many coils, joints and cameras."""
-    parts = ["<"]
+def parts(coils: int, joints: int = 0, cameras: int = 0, loads: int = 0, cells: int = 0) -> Parts:
+    """Return how many coils, joints, cameras, load cells and force cells a robot has."""
+    return Parts(coils, joints, cameras, loads, cells)
+
+
+def layout(numbers, parts: Parts) -> str:
+    """Return the struct format of a record of these variables of a robot with these parts."""
+    form = ["<"]
     for place in numbers:
         letter = VARIABLES[place].letter
-        count = _count(letter, coils, joints, cameras)
-        parts.append(letter if count < 0 else f"{count}{letter[0]}" if count else "")
-    return "".join(parts)
+        count = _count(letter, parts)
+        form.append(letter if count < 0 else f"{count}{letter[0]}" if count else "")
+    return "".join(form)
 
 
-def size(numbers, coils: int, joints: int = 0, cameras: int = 0) -> int:
+def size(numbers, parts: Parts) -> int:
     """Return how many bytes the values of these variables take."""
-    return struct.calcsize(layout(numbers, coils, joints, cameras))
+    return struct.calcsize(layout(numbers, parts))
 
 
-def unpack(numbers, values: bytes, coils: int, joints: int = 0, cameras: int = 0) -> list:
+def unpack(numbers, values: bytes, parts: Parts) -> list:
     """Return the value of each variable, a tuple where there are several or none; ValueError when they do not fit."""
-    form = layout(numbers, coils, joints, cameras)
+    form = layout(numbers, parts)
     if struct.calcsize(form) != len(values):
         raise ValueError(f"{len(values)} bytes of values, expected {struct.calcsize(form)}")
     flat = struct.unpack(form, values)
     found, at = [], 0
     for place in numbers:
-        count = _count(VARIABLES[place].letter, coils, joints, cameras)
+        count = _count(VARIABLES[place].letter, parts)
         if count < 0:
             found.append(flat[at])
             at += 1
@@ -91,11 +101,9 @@ def unpack(numbers, values: bytes, coils: int, joints: int = 0, cameras: int = 0
     return found
 
 
-def _count(letter: str, coils: int, joints: int, cameras: int) -> int:
+def _count(letter: str, parts: Parts) -> int:
     """Return how many values a variable of that letter has, or -1 for a single one that every robot has."""
-    if len(letter) == 1:
-        return -1
-    return coils if letter[1] == "*" else joints if letter[1] == "+" else cameras
+    return parts[MARKS.index(letter[1])] if len(letter) == 2 else -1
 
 
 def veiled(values: bytes) -> bytes:
@@ -112,5 +120,6 @@ USUAL = tuple([
     for name in (
         "state", "step", "supply_mv", "current_ma", "board_decidegc", "roll_decideg", "pitch_decideg", "down",
         "duty_permille", "coil_decidegc", "joint_centi", "commanded_centi", "joint_ma", "object_centideg",
+        "load_mn", "cell_pa",
     )
 ])  # fmt: skip

@@ -8,9 +8,9 @@ while not check.go_on(32):  # a piece of it in each control step
 from protocol import program
 
 
-def check_code(code: bytes, coils: int, bytes_max: int, joints: int = 0) -> None:
+def check_code(code: bytes, coils: int, bytes_max: int, joints: int = 0, cells: int = 0) -> None:
     """Raise BadProgram unless the whole code may be run, see Check."""
-    check = Check(code, coils, bytes_max, joints)
+    check = Check(code, coils, bytes_max, joints, cells)
     while not check.go_on(len(code)):
         pass
 
@@ -20,17 +20,19 @@ class Check:
 
     Every op is whole and known, loops nest, guards are few, a coil is aimed before it is used, and the code ends with
     HALT; else BadProgram. Limits of duty and time are not looked at here: the channels hold every order against them
-    as it runs. `needs_attitude` tells whether anything seen so far asks where down is, `needs_camera` whether anything
-    asks how the gripped object lies, `needs_loop` whether anything turns it by the camera.
+    as it runs. What it has seen so far asks where down is: `needs_attitude`; asks how the gripped object lies:
+    `needs_camera`; turns it by the camera: `needs_loop`; asks for the force on the load cell: `needs_load`; regulates
+    it: `needs_press`.
     """
 
-    def __init__(self, code: bytes, coils: int, bytes_max: int, joints: int = 0) -> None:
+    def __init__(self, code: bytes, coils: int, bytes_max: int, joints: int = 0, cells: int = 0) -> None:
         if not 0 < len(code) <= bytes_max:
             raise program.BadProgram(f"{len(code)} bytes of code, at most {bytes_max}")
-        self.needs_attitude = self.needs_camera = self.needs_loop = False
+        self.needs_attitude = self.needs_camera = self.needs_loop = self.needs_load = self.needs_press = False
         self._code = code
         self._coils = (1 << coils) - 1
         self._joints = (1 << coils + joints) - 1 - self._coils
+        self._cells = (1 << cells) - 1
         self._at = 0
         self._op = program.HALT
         self._depth = 0
@@ -63,6 +65,8 @@ class Check:
         _check_arguments(self._code, at)
         self.needs_loop = self.needs_loop or op == program.ORIENT
         self.needs_camera = self.needs_camera or self.needs_loop
+        self.needs_press = self.needs_press or op == program.PRESS
+        self.needs_load = self.needs_load or self.needs_press
         if op == program.AIM:
             self._aim(at)
         elif op == program.AIMED:
@@ -89,16 +93,19 @@ class Check:
         source, quantifier = condition.source, condition.quantifier
         if quantifier == program.CHOSEN and source in program.OF_COILS:
             self._chosen(condition.mask, at)
-        elif not (program.TEMPERATURE <= source <= program.ORIENTATION and quantifier <= program.ALL):
+        elif not (program.TEMPERATURE <= source <= program.PRESSURE and quantifier <= program.ALL):
             raise program.BadProgram("a condition this robot does not know", at)
         elif source in program.OF_COILS:
             _check_mask(condition.mask, self._coils, at)
         elif source in program.OF_JOINTS:
             _check_mask(condition.mask, self._joints, at)
+        elif source in program.OF_CELLS:
+            _check_mask(condition.mask, self._cells, at)
         if condition.compare > program.ABOVE:
             raise program.BadProgram("a condition this robot does not know", at)
         self.needs_attitude = self.needs_attitude or source in program.OF_ATTITUDE
         self.needs_camera = self.needs_camera or source == program.ORIENTATION
+        self.needs_load = self.needs_load or source == program.FORCE
 
     def _masks(self, op: int, at: int) -> None:
         """Raise BadProgram when an order is for channels that this robot has not, or that are of the other kind."""
@@ -106,8 +113,8 @@ class Check:
             _check_mask(program.number(self._code, at + 1, 4), self._coils, at)
         elif op == program.MOVE:
             _check_mask(program.number(self._code, at + 1, 4), self._joints, at)
-        elif op == program.ORIENT and not self._joints:
-            raise program.BadProgram("an object is to be turned, and this robot has no joints", at)
+        elif op in (program.ORIENT, program.PRESS) and not self._joints:
+            raise program.BadProgram("joints are to be regulated, and this robot has none", at)
 
 
 def _check_mask(mask: int, known: int, at: int) -> None:
@@ -123,5 +130,7 @@ def _check_arguments(code: bytes, at: int) -> None:
         raise program.BadProgram(f"duty {duty_permille} permille, at most 1000", at)
     if op == program.REPEAT and program.number(code, at + 1, 2) == 0:
         raise program.BadProgram("a loop of no turns", at)
+    if op == program.PRESS and program.number(code, at + 3, 2) > program.number(code, at + 5, 4):
+        raise program.BadProgram("a force that is to be reached after the end of its order", at)
     if op == program.WAIT and code[at + 13] not in (program.ABORT, program.CONTINUE):
         raise program.BadProgram(f"a wait that ends in {code[at + 13]}", at)

@@ -173,9 +173,9 @@ class FakeRobot:
     def telemetry(self, late_ms: int = 0) -> None:
         """Send telemetry, or what is that late."""
         degrees = [250 + duty for duty in self.duty]
-        counts = len(self.duty), len(self.joints), self.parts.cameras
+        counts = variables.parts(len(self.duty), len(self.joints), self.parts.cameras)
         values = variables.veiled(struct.pack(
-            variables.layout(variables.USUAL, *counts),
+            variables.layout(variables.USUAL, counts),
             self.state, 0, self.supply_mv, 0, 231, *self.attitude.values(), *self.duty, *degrees,
             *[joint.centi for joint in self.joints], *[joint.commanded_centi for joint in self.joints],
             *[joint.ma for joint in self.joints], *[self.object_centideg] * self.parts.cameras,

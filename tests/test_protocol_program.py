@@ -23,6 +23,7 @@ OPS = [
     (program.aimed(2, 1000, 550, 950), "0b 02 e803 2602 b603 0000"),
     (program.move(0b10, -250, 1000), "0c 02000000 06ff e803"),
     (program.orient(-30, 5000), "0d e2ff 8813"),
+    (program.press(5000, 1000, 70_000), "0e 8813 e803 70110100"),
     (program.halt(), "00"),
 ]
 
@@ -107,6 +108,36 @@ def test_an_order_or_condition_for_channels_of_the_other_kind_is_refused(code):
         verify.check_code(code + program.halt(), coils=8, bytes_max=100, joints=2)
 
 
+@pytest.mark.parametrize(
+    ("code", "load", "press"),
+    [
+        (program.move(1, 0, 1), False, False),
+        (program.guard(Condition(program.PRESSURE, 0, program.ABOVE, 0, 1 << 5)), False, False),
+        (program.guard(Condition(program.FORCE, 0, program.ABOVE, 0, 0)), True, False),
+        (program.press(0, 1, 1), True, True),
+    ],
+)
+def test_the_verification_finds_out_whether_a_program_needs_the_load_cell_and_the_press(code, load, press):
+    check = verify.Check(code + program.halt(), 0, 100, joints=1, cells=6)
+
+    while not check.go_on(1):
+        pass
+
+    assert (check.needs_load, check.needs_press) == (load, press)
+
+
+def test_a_condition_on_a_cell_that_the_robot_has_not_is_refused():
+    code = program.guard(Condition(program.PRESSURE, program.ANY, program.ABOVE, 0, 1 << 6)) + program.halt()
+
+    with pytest.raises(program.BadProgram, match="channels 0x40, this robot has 0x3f"):
+        verify.check_code(code, coils=0, bytes_max=100, joints=1, cells=6)
+
+
+def test_a_force_that_is_reached_after_its_time_is_refused():
+    with pytest.raises(program.BadProgram, match="after the end of its order"):
+        verify.check_code(program.press(500, 1001, 1000) + program.halt(), coils=0, bytes_max=100, joints=1)
+
+
 BAD = {
     "nothing": (b"", "0 bytes of code"),
     "no halt": (program.delay(1), "needs a halt"),
@@ -118,10 +149,11 @@ BAD = {
     "no turns": (program.repeat(0) + program.next_() + program.halt(), "no turns"),
     "no coil": (program.fire(0, 1, 1) + program.halt(), "channels 0x0"),
     "unknown coil": (program.fire(1 << 8, 1, 1) + program.halt(), "channels 0x100"),
-    "an object without joints": (program.orient(500, 1000) + program.halt(), "has no joints"),
+    "an object without joints": (program.orient(500, 1000) + program.halt(), "this robot has none"),
+    "a force without joints": (program.press(500, 0, 1000) + program.halt(), "this robot has none"),
     "duty above all": (program.fire(1, 1001, 1) + program.halt(), "duty 1001"),
     "nine guards": (program.guard(CONDITION) * 9 + program.halt(), "at most 8 guards"),
-    "unknown source": (program.guard(Condition(12, 0, 0, 0, 1)) + program.halt(), "does not know"),
+    "unknown source": (program.guard(Condition(14, 0, 0, 0, 1)) + program.halt(), "does not know"),
     "unknown quantifier": (program.guard(Condition(1, 3, 0, 0, 1)) + program.halt(), "does not know"),
     "chosen current": (AIM + program.guard(Condition(2, 2, 0, 0, 0)) + program.halt(), "does not know"),
     "a coil used before it is aimed": (program.aimed(0, 1, 1) + AIM + program.halt(), "holds no coil"),

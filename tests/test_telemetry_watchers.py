@@ -28,7 +28,9 @@ def test_a_watcher_gets_the_usual_variables_for_two_seconds_while_another_holds_
     records = watched(rig, 4000)
 
     assert len(records) == pytest.approx(20, abs=1)
-    values = variables.unpack(variables.USUAL, variables.veiled(records[0].values), rig.core.channels.count)
+    values = variables.unpack(
+        variables.USUAL, variables.veiled(records[0].values), variables.parts(rig.core.channels.count)
+    )
     assert values[variables.USUAL.index(variables.number("state"))] == messages.ARMED
     assert rig.core.session == SESSION
     assert rig.core.reports.subscriptions.active == []
