@@ -39,7 +39,14 @@ PARTS = (
     ("U7", "MCP2515, crystal 8 MHz, 3.3 V transceiver", "option", "CAN, once the robot has a number; not CAN FD."),
     ("U8", "LSM6DS3TR-C", "spheres", "Attitude, in the core's axes."),
     ("", "Digital servo, its potentiometer's wiper brought out", "a joint each", "±90° from 0.5 to 2.5 ms, 6 V."),
-    ("U9", "MCP3208", "joints", "Eight inputs of 12 bits: currents and angles of the joints, and four to spare."),
+    ("", "Linear servo with lead screw, wiper brought out", "press", "±10 mm from 0.5 to 2.5 ms, 6 V. ASSUMED."),
+    ("U9", "MCP3208", "joints", "Eight inputs of 12 bits: currents and positions of joints, force cells."),
+    ("U11", "MCP3208", "press", "Eight more: the load cell."),
+    (
+        "", "Load cell with its amplifier, 3.3 V", "press",
+        "ASSUMED: 0.66 V without load and 0.1007 V/N, so -6.5 to 26.2 N. At either end it counts as broken.",
+    ),
+    ("", "Force cell, 5 x 5 mm, 3.3 V", "press, six", "ASSUMED: 0 V at 0 and 3.3 V at 20 kPa, cast into the block."),
     (
         "U10, R2, R3", "INA2180A2, two of 10 mΩ 1 % 1 W", "joints",
         "Each servo's current as 0.5 V/A: gain 50 (TI SBOS741); 6.6 A fill the range.",
@@ -67,8 +74,14 @@ def fields(robots: Path, table: Table) -> dict[str, str]:
 
 
 def wiring(profile: dict) -> str:
-    """Return each coil of a robot with the net of its gate, each joint with that of its pulses and its two inputs."""
-    return ", ".join(f"{row['label']} {_net(row)}" for row in profile["channels"])
+    """Return each coil of a robot with the net of its gate, each joint with that of its pulses and its two inputs.
+
+    A load cell and force cells follow with their inputs.
+    """
+    rows = [f"{row['label']} {_net(row)}" for row in profile["channels"]]
+    rows += [f"load cell CH{profile['load']['input']}"] if "load" in profile else []
+    rows += [f"{cell['label']} CH{cell['input']}" for cell in profile.get("cells", ())]
+    return ", ".join(rows)
 
 
 def _net(row: dict) -> str:

@@ -3,8 +3,8 @@
 The outputs of both PWM chips drive only while the heartbeat keeps the monostable running and the emergency-stop loop
 is closed; the monitor's ALERT is the monostable's clear input. The coils are fed only while PWR_EN is high. Both rest
 low, hence off, when the processor is reset; the chips keep their registers through that. An attitude sensor is there
-where the body has `motion` to be felt; its axes are the core's. An analogue converter hangs on the second SPI bus, and
-where there is something to look at, an angle camera on the I2C bus.
+where the body has `motion` to be felt; its axes are the core's. Two analogue converters hang on the second SPI
+bus, and where there is something to look at, an angle camera on the I2C bus.
 
     board = Board(clock, journal, supply, outputs=[(0x60, 0), (0x60, 1)], ntc=Ntc())
     board.gates()  # what each coil is driven with
@@ -18,6 +18,7 @@ from hil_sim.clock import Clock
 from hil_sim.devices.anglecamera import AngleCamera, Optics
 from hil_sim.devices.canframe import Frame
 from hil_sim.devices.canwire import CanWire
+from hil_sim.devices.converters import Converters
 from hil_sim.devices.flash import Flash
 from hil_sim.devices.gpio import OUT, Gpio
 from hil_sim.devices.i2c import Bus
@@ -25,7 +26,6 @@ from hil_sim.devices.ina226 import Ina226
 from hil_sim.devices.ina226converter import Source
 from hil_sim.devices.lsm6ds3tr import Lsm6ds3tr, Motion
 from hil_sim.devices.mcp2515 import Mcp2515
-from hil_sim.devices.mcp3208 import Mcp3208
 from hil_sim.devices.monostable import Monostable
 from hil_sim.devices.ntc import Ntc
 from hil_sim.devices.pca9685 import Gate, Pca9685
@@ -39,7 +39,8 @@ from hil_sim.journal import ADC, CAN_HEARD, CAN_SENT, FAULT, RESET, UART_HEARD, 
 PWR_EN, HEARTBEAT, ESTOP_SENSE, ALERT = 2, 3, 6, 7
 SDA, SCL = 4, 5
 SERVOS = (8, 9, 10)
-ADC_MISO, ADC_SELECT, ADC_SCK, ADC_MOSI = range(12, 16)
+ADC_MISO, ADC_SCK, ADC_MOSI = 12, 14, 15
+ADC_SELECTS = (13, 11)  # of the inputs 0 to 7, and 8 to 15
 MISO, CAN_SELECT, SCK, MOSI, CAN_INTERRUPT = range(16, 21)
 WARM = 21
 THERMISTOR_CHANNEL = 0
@@ -102,9 +103,9 @@ class Board:
         self.gpio = Gpio(clock, journal)
         self.can_wire = can_wire or CanWire(clock)
         self.can = Mcp2515(clock, self.can_wire, passed=self._on_frame)
-        self.adc = Mcp3208()
+        self.adc = Converters()
         self.spi = SpiBus({CAN_SELECT: self.can}, self._is_low)
-        self.adc_spi = SpiBus({ADC_SELECT: self.adc}, self._is_low)
+        self.adc_spi = SpiBus(dict(zip(ADC_SELECTS, self.adc.chips, strict=True)), self._is_low)
         self.pulses = PwmSlices(clock, journal)
         self.servos = {pin: Servo(dead_band_us=servo_dead_band_us) for pin in SERVOS}
         self.remanence = Remanence(clock)
@@ -114,7 +115,8 @@ class Board:
         self.gpio.sources[ESTOP_SENSE] = lambda: 1 if self.estop_closed else None
         self.gpio.sources[ALERT] = self.monitor.alert_level
         self.gpio.watchers[CAN_SELECT] = lambda _: self.spi.look()
-        self.gpio.watchers[ADC_SELECT] = lambda _: self.adc_spi.look()
+        for pin in ADC_SELECTS:
+            self.gpio.watchers[pin] = lambda _: self.adc_spi.look()
         self.gpio.sources[CAN_INTERRUPT] = self.can.int_level
         for pin, servo in self.servos.items():
             self.pulses.watch(pin, servo.pulsed)

@@ -17,7 +17,7 @@ NETS = {number: net for number, net, _ in board.PINS}
 
 @pytest.mark.parametrize(
     "name", ["PWR_EN", "HEARTBEAT", "SDA", "SCL", "ESTOP_SENSE", "ALERT", "SERVOS", "MISO", "CAN_SELECT", "SCK", "MOSI",
-    "CAN_INTERRUPT", "MONITOR", "WARM", "ADC_MISO", "ADC_SELECT", "ADC_SCK", "ADC_MOSI"],
+    "CAN_INTERRUPT", "MONITOR", "WARM", "ADC_MISO", "ADC_SELECTS", "ADC_SCK", "ADC_MOSI"],
 )  # fmt: skip
 def test_the_bench_is_wired_to_the_pins_that_the_firmware_uses(name):
     assert getattr(bench, name) == PICO[name]
@@ -45,10 +45,10 @@ def test_boot_and_main_repeat_the_pins_and_addresses_of_the_board():
 def test_no_pin_is_wired_twice_and_every_pin_of_the_firmware_is():
     pins = [number for number, _, _ in board.PINS]
     named = {"TX", "RX", "STRAP", "THERMISTOR", "PWR_EN", "HEARTBEAT", "SDA", "SCL", "ESTOP_SENSE", "ALERT", "MISO"}
-    named |= {"CAN_SELECT", "SCK", "MOSI", "CAN_INTERRUPT", "WARM", "ADC_MISO", "ADC_SELECT", "ADC_SCK", "ADC_MOSI"}
+    named |= {"CAN_SELECT", "SCK", "MOSI", "CAN_INTERRUPT", "WARM", "ADC_MISO", "ADC_SCK", "ADC_MOSI"}
 
     assert len(set(pins)) == len(pins)
-    assert set(pins) == {PICO[name] for name in named} | set(PICO["SERVOS"])
+    assert set(pins) == {PICO[name] for name in named} | set(PICO["SERVOS"]) | set(PICO["ADC_SELECTS"])
 
 
 def test_every_net_of_the_processor_is_drawn_at_another_end_too():
@@ -104,3 +104,14 @@ def test_a_count_of_the_converter_is_the_current_that_the_amplifier_makes_it():
     ua = REFERENCE_V / STEPS / (shunt_ohm * gain) * 1e6
 
     assert profile["servo"]["ua_per_count"] == round(ua)
+
+
+PRESS = {
+    "channels": [{"label": "P", "kind": "servo", "pin": 8, "current": 0, "position": 1}],
+    "load": {"input": 8},
+    "cells": [{"label": "C1", "input": 2}, {"label": "C2", "input": 3}],
+}
+
+
+def test_load_cell_and_force_cells_are_wired_to_inputs_of_the_converters():
+    assert hardwarepage.wiring(PRESS) == "P SERVO0, current CH0, position CH1, load cell CH8, C1 CH2, C2 CH3"

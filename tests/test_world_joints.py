@@ -19,12 +19,12 @@ import micropython
 from firmware.boards.pico import Board
 board = Board()
 adc, right, left, camera = board.adc(), board.servo(8, 200), board.servo(9, 200), board.camera(0x33)
-counts = [0] * 8
+counts = [0] * 16
 
 def step(width_ns):
     micropython.heap_lock()
-    for channel in range(8):
-        counts[channel] = adc.counts(channel)
+    for number in range(16):
+        counts[number] = adc.counts(number)
     right.pulse(width_ns)
     fresh = camera.read()
     micropython.heap_unlock()
@@ -42,7 +42,7 @@ class Rig:
         sources |= {str(path.relative_to(ROOT)): path.read_text() for path in (ROOT / "protocol").rglob("*.py")}
         self.bench = bench_of(folder, BOARD + main, sources, execute=WORLDS[world], keep_journal=True)
         self.board = self.bench.board
-        self.board.adc.inputs.update({channel: lambda channel=channel: 0.25 * channel for channel in range(6)})
+        self.board.adc.inputs.update({number: lambda number=number: 0.2 * number for number in range(14)})
         self.camera = AngleCamera(CAMERA, self.bench.clock, Optics(), seed="1")
         self.board.bus.chips.append(self.camera)
         self._object_deg = object_deg
@@ -66,10 +66,10 @@ class Rig:
         return "".join(self.bench.world.console).split("\n")[:-1]
 
 
-def test_the_firmware_reads_all_eight_inputs(tmp_path):
+def test_the_firmware_reads_all_sixteen_inputs(tmp_path):
     said = Rig(tmp_path, "step(0)\nprint(counts)").run().done()
 
-    assert said == [str([round(0.25 * channel / 3.3 * 4096) for channel in range(6)] + [0, 0])]
+    assert said == [str([round(0.2 * number / 3.3 * 4096) for number in range(14)] + [0, 0])]
 
 
 def test_pulses_turn_one_servo_and_leave_its_neighbour_limp(tmp_path):

@@ -55,11 +55,16 @@ def test_on_other_pins_nothing_answers(tmp_path):
     assert run(tmp_path, SPI_ON_17 + main).said == ["b'\\x00'"]
 
 
-@pytest.mark.parametrize(("pins", "heard"), [("sck=Pin(14), mosi=Pin(15), miso=Pin(12)", 0x800), ("", 0)])
-def test_the_converter_answers_on_its_own_pins_of_the_second_bus(tmp_path, pins, heard):
+ADC_PINS = "sck=Pin(14), mosi=Pin(15), miso=Pin(12)"
+
+
+@pytest.mark.parametrize(
+    ("pins", "low", "heard"), [(ADC_PINS, 13, 0x800), (ADC_PINS, 11, 0x400), ("", 13, 0), (ADC_PINS, 10, 0)]
+)
+def test_the_converters_answer_on_their_own_pins_of_the_second_bus(tmp_path, pins, low, heard):
     main = f"""
 from machine import SPI
-cs = Pin(13, Pin.OUT, value=0)
+cs = Pin({low}, Pin.OUT, value=0)
 spi = SPI(1, 1_000_000, {pins})
 b = bytearray(b'\\x06\\x40\\x00')
 spi.write_readinto(b, b)
@@ -67,7 +72,7 @@ print((b[1] & 15) << 8 | b[2])
 while True: time.sleep_ms(5)
 """
     bench = bench_of(tmp_path, main)
-    bench.board.adc.inputs[1] = lambda: 1.65
+    bench.board.adc.inputs.update({1: lambda: 1.65, 9: lambda: 0.825})
     bench.clock.run_until(BOOT_US + 10_000)
     bench.close()
 

@@ -1,8 +1,8 @@
 """The Pico-class board: which pin is which, and the chips on its bus.
 
 Two PCA9685 drive the coils' low-side MOSFETs, an INA226 watches the common supply, a thermistor the board; some robots
-carry an LSM6DS3TR-C besides, for their attitude. Robots with joints have servos on PWM pins, an MCP3208 that measures
-them, and an angle camera on the bus. The outputs are enabled only while the heartbeat pin keeps moving (a
+carry an LSM6DS3TR-C besides, for their attitude. Robots with joints have servos on PWM pins, one or two MCP3208 that
+measure, and an angle camera on the bus. The outputs are enabled only while the heartbeat pin keeps moving (a
 retriggerable monostable of 50 ms) and the emergency-stop loop is closed: a hung processor cannot hold a coil on. An
 MCP2515 joins the robot to a CAN bus where it is fitted.
 """
@@ -21,7 +21,8 @@ from firmware.drivers.pca9685 import Pca9685
 # GP numbers; docs/hardware.md has what each is wired to. boot.py and main.py, which import nothing, repeat five.
 TX, RX, PWR_EN, HEARTBEAT, SDA, SCL, ESTOP_SENSE, ALERT = 0, 1, 2, 3, 4, 5, 6, 7
 SERVOS = (8, 9, 10)
-ADC_MISO, ADC_SELECT, ADC_SCK, ADC_MOSI = 12, 13, 14, 15
+ADC_MISO, ADC_SCK, ADC_MOSI = 12, 14, 15
+ADC_SELECTS = (13, 11)  # of the converter's inputs 0 to 7, and 8 to 15
 MISO, CAN_SELECT, SCK, MOSI, CAN_INTERRUPT = 16, 17, 18, 19, 20
 WARM, STRAP, THERMISTOR = 21, 22, 26
 MONITOR = 0x40
@@ -68,11 +69,15 @@ class Board:
         return Lsm6ds3tr(self._bus, address)
 
     def adc(self):
-        """Return the driver of the converter behind the joints' currents and angles; see `can` for its import."""
+        """Return the driver of the two converters, inputs 0 to 15; see `can` for its import.
+
+        Both selects are high from here on: a robot without the second chip never reads beyond the first one's inputs.
+        """
+        from firmware.drivers.converters import Converters  # noqa: PLC0415
         from firmware.drivers.mcp3208 import Mcp3208  # noqa: PLC0415
 
         spi = SPI(1, ADC_HZ, sck=Pin(ADC_SCK), mosi=Pin(ADC_MOSI), miso=Pin(ADC_MISO))
-        return Mcp3208(spi, Pin(ADC_SELECT, Pin.OUT, value=1))
+        return Converters([Mcp3208(spi, Pin(pin, Pin.OUT, value=1)) for pin in ADC_SELECTS])
 
     def servo(self, pin: int, hz: int):
         """Return the driver of the servo on that pin, one of SERVOS, with so many pulses a second."""
