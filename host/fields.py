@@ -20,8 +20,6 @@ from numpy.typing import NDArray
 
 Row = dict[str, Any]
 Floats = NDArray[np.float32]
-EVERY_MS = 200  # from slice to slice, at first
-MOST = 256  # slices of one rhythm; after so many it has half its speed, so that hours of waiting stay small
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,30 +40,6 @@ class Slice:
     stress_kpa: Floats  # (T, 4) x, y, z, xy
     von_mises_kpa: Floats  # (T,)
     strain: Floats  # (T, 3) x, y, engineering shear xy
-
-
-class Rhythm:
-    """Says when the next slice is due, so that slices lie at even times since the first."""
-
-    def __init__(self) -> None:
-        self._every_ms, self._count = EVERY_MS, 0
-        self._due_ms: int | None = None
-
-    def restart(self, host_ms: int) -> None:
-        """Count from now on."""
-        self._due_ms = host_ms
-
-    def due(self, host_ms: int) -> bool:
-        """Return whether a slice is due, and if so expect the next one."""
-        if self._due_ms is None:
-            self._due_ms = host_ms
-        if host_ms < self._due_ms:
-            return False
-        self._count += 1
-        if self._count % MOST == 0:
-            self._every_ms *= 2
-        self._due_ms += (1 + (host_ms - self._due_ms) // self._every_ms) * self._every_ms
-        return True
 
 
 def mesh_of(fields: Row) -> Mesh:

@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from mcap.writer import Writer
 
@@ -26,19 +26,23 @@ from host.profile import Parts
 from host.recording import Scene
 from host.records import Event, Record, Sample, Telemetry, row_of
 
+if TYPE_CHECKING:
+    from host.fields import Mesh, Slice
+
 CHUNK_BYTES = 64 * 1024
 CHUNK_MS = 1000
 NS_PER_MS = 1_000_000
 
 NUMBER, TEXT, MAYBE = {"type": "number"}, {"type": "string"}, {"type": ["number", "null"]}
 BY_LABEL = {"type": "object", "additionalProperties": NUMBER}
+PACKED = {"type": "string", "contentEncoding": "base64"}
 COORDINATES = {"type": "array", "items": {"type": "array", "items": NUMBER}}
 TOPICS: dict[str, dict[str, Any]] = {
     "bytes": {
         "host_ms": NUMBER,
         "now_ms": MAYBE,
         "direction": {"type": "string", "enum": ["in", "out"]},
-        "data": {"type": "string", "contentEncoding": "base64"},
+        "data": PACKED,
     },
     "telemetry": {
         **dict.fromkeys(("host_ms", "now_ms", "step", "supply_mv", "current_ma", "board_degc"), NUMBER),
@@ -85,6 +89,8 @@ TOPICS: dict[str, dict[str, Any]] = {
         "object": {"type": "object"},
         "observed": {"type": "object"},
     },
+    "mesh": {"host_ms": NUMBER, "points_mm": PACKED, "triangles": PACKED},
+    "fields": {"host_ms": NUMBER, "t_s": NUMBER, "displacement_mm": PACKED, "stress_kpa": PACKED},
 }
 
 
@@ -140,6 +146,18 @@ class LogWriter:
     def scene(self, scene: Scene) -> None:
         """Keep what an observer saw."""
         self._add("scenes", scene["host_ms"], scene)
+
+    def mesh(self, mesh: Mesh, host_ms: int) -> None:
+        """Keep the mesh of a body that an observer sees inside, before its slices."""
+        from host.fields import mesh_row  # noqa: PLC0415  (numpy, which most logs do not need)
+
+        self._add("mesh", host_ms, mesh_row(mesh, host_ms))
+
+    def slice(self, taken: Slice) -> None:
+        """Keep what an observer saw inside a body."""
+        from host.fields import slice_row  # noqa: PLC0415
+
+        self._add("fields", taken.host_ms, slice_row(taken))
 
     def attach(self, name: str, data: bytes, media_type: str = "text/plain") -> None:
         """Attach a file: the script, the dictionary, the versions, the report."""

@@ -12,6 +12,7 @@ import json
 import struct
 from collections import Counter
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
@@ -55,8 +56,20 @@ class Log:
         """Return what the run was: its script and address, or the name of the file."""
         versions = json.loads(self.attachments.get("versions.json", b"{}"))
         return f"{Path(versions['script']).name} on {versions['address']}" if "script" in versions else self.path.name
+        self._see_inside(recording)
 
     def info(self) -> Row:
+    def _see_inside(self, recording: Recording) -> None:
+        """Add mesh and slices, where the log has them; rows that are damaged end them."""
+        if "mesh" not in self.rows:
+            return
+        from host.fields import mesh_from, slice_from  # noqa: PLC0415  (numpy, which most logs do not need)
+
+        with suppress(KeyError, TypeError, ValueError):
+            recording.mesh = mesh_from(self.rows["mesh"][0])
+            for row in self.rows.get("fields", ()):
+                recording.slices.append(slice_from(row, recording.mesh))
+
         """Return what is in the log."""
         times = [row["host_ms"] for rows in self.rows.values() for row in rows]
         return {

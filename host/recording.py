@@ -3,6 +3,7 @@
 A scene is what the address's observer (the bench; a motion-capture system) says of one instant: `snapshot()` (hub,
 nodes and coils in the plane's own axes, of two coordinates or three, mm and degrees Celsius), `observe()` under
 "observed" (travel_mm, ...) and the host's clock at that time. A real robot has no observer and its recording no scenes.
+One that sees inside a body (`fields()`) gives slices of it over its mesh, see `fields`.
 
     recording = Recording(robot.profile.coil_labels, "circular-crawl.gait on sim:circular")
     recording.note(record)                    # each Telemetry and Event
@@ -13,9 +14,12 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from host.records import Event, Telemetry
+
+if TYPE_CHECKING:
+    from host.fields import Mesh, Slice  # numpy is slow to import, and most robots have none
 
 Scene = dict[str, Any]
 
@@ -36,6 +40,8 @@ class Recording:
         """Keep a record that pictures need; others are passed over."""
         if isinstance(record, Telemetry):
             self.telemetry.append(record)
+    mesh: Mesh | None = None  # of the body, where an observer sees inside it
+    slices: list[Slice] = field(default_factory=list)
         elif isinstance(record, Event):
             self.events.append(record)
 

@@ -7,7 +7,7 @@ ending.result                        # "done", "guard", "timeout", "fault", ...
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from host.attention import Attention
 from host.errors import LinkLost, RobotFault, ScriptFailed, SoftrigError
@@ -17,7 +17,11 @@ from host.profile import Parts
 from host.recording import Recording, Scene
 from host.records import Event, Record, Telemetry
 from host.robot import ENDS, Robot
+from host.slicing import Slicing
 from protocol import causes, codes, program
+
+if TYPE_CHECKING:
+    from host.fields import Mesh, Slice
 
 TELEMETRY_MS = 50
 PATIENCE_MS = 10_000  # with a line that breaks while the program runs
@@ -40,6 +44,7 @@ class Keeper:
         self._observer = observer
         self._scenes = scenes
         self._attention = Attention()
+        self._slicing = Slicing(observer if scenes else None, self._keep_slice)
         if scenes and hasattr(observer, "watch"):
             observer.watch(self.glance)
 
@@ -64,6 +69,9 @@ class Keeper:
         if self._scenes and isinstance(record, Telemetry):
             self._keep(self._observer.snapshot(), record.host_ms)
         if self.recording.joints and isinstance(record, Event) and record.event in ENDS and not self.recording.at_end:
+            self._slicing.look(record.host_ms)
+        if isinstance(record, Event) and record.event in ("started", *ENDS):
+            self._slicing.take(record.host_ms)
             self.recording.at_end = self._observer.observe()
 
     def link(self, news: LinkNews) -> None:
@@ -72,10 +80,11 @@ class Keeper:
             self._log.link(news)
 
     def glance(self, host_ms: int) -> None:
-        """Keep what the observer sees, once telemetry comes, if the body moves quickly."""
+        """Keep what the observer sees, once telemetry comes: slices when due, else if the body moves quickly."""
         if not self.recording.telemetry:
             return
         snapshot = self._observer.snapshot()
+        self._slicing.look(host_ms)
         if self._attention.stirs(snapshot):
             self._keep(snapshot, host_ms)
 
@@ -89,6 +98,15 @@ class Keeper:
         if self._log:
             self._log.scene(scenes[-1])
 
+
+    def _keep_slice(self, mesh: Mesh, taken: Slice) -> None:
+        """Keep what the observer sees inside the body."""
+        if self._log and self.recording.mesh is None:
+            self._log.mesh(mesh, taken.host_ms)
+        self.recording.mesh = mesh
+        self.recording.slices.append(taken)
+        if self._log:
+            self._log.slice(taken)
 
 @dataclass(frozen=True, slots=True)
 class Ending:
