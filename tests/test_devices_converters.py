@@ -2,8 +2,7 @@
 
 import pytest
 
-from firmware.drivers.converters import Converters as Driver
-from firmware.drivers.mcp3208 import Mcp3208 as ChipDriver
+from firmware.drivers.mcp3208 import Mcp3208
 from hil_sim.devices.converters import Converters
 from hil_sim.devices.spi import SpiBus
 
@@ -29,7 +28,7 @@ class Rig:
         self.pins = {number: Pin() for number in SELECTS}
         wired = dict(zip(SELECTS, self.devices.chips, strict=True))
         self.bus = SpiBus(wired, lambda number: not self.pins[number].level)
-        self.driver = Driver([ChipDriver(self, pin) for pin in self.pins.values()])
+        self.driver = Mcp3208(self, *self.pins.values())
 
     def write_readinto(self, sent, read):
         read[:] = self.bus.transfer(bytes(sent), 1_000_000, 0)

@@ -73,11 +73,10 @@ class Board:
 
         Both selects are high from here on: a robot without the second chip never reads beyond the first one's inputs.
         """
-        from firmware.drivers.converters import Converters  # noqa: PLC0415
         from firmware.drivers.mcp3208 import Mcp3208  # noqa: PLC0415
 
         spi = SPI(1, ADC_HZ, sck=Pin(ADC_SCK), mosi=Pin(ADC_MOSI), miso=Pin(ADC_MISO))
-        return Converters([Mcp3208(spi, Pin(pin, Pin.OUT, value=1)) for pin in ADC_SELECTS])
+        return Mcp3208(spi, *[Pin(pin, Pin.OUT, value=1) for pin in ADC_SELECTS])
 
     def servo(self, pin: int, hz: int):
         """Return the driver of the servo on that pin, one of SERVOS, with so many pulses a second."""
