@@ -76,7 +76,8 @@ class Answers:
     def _refused(self, row: Any, parts: Parts) -> Taken:
         asked = self._asked.get(row.request)
         name, label = asked.name if asked else "an order", channel_name(row.channel, parts.channels)
-        return self._taken(row.request, Refused(name, row.code, row.value, row.limit, label, parts.kind(label)))
+        told = Refused(name, row.code, row.value, row.limit, label, parts.kind(label), parts.unit)
+        return self._taken(row.request, told)
 
     def _taken(self, seq: int, answer: Refused | Answer | None) -> Taken:
         asked = self._asked.pop(seq, None)

@@ -1,4 +1,4 @@
-"""What each coil was given and each joint did during a run, worked out of its telemetry, as fields and as lines.
+"""What each coil was given, each joint did and each cell felt during a run, by its telemetry, as fields and as lines.
 
 On-time and energy are summed over the telemetry, each record holding until the next one; the energy is that of the coil
 itself: duty x (measured supply voltage / (coil + wiring))^2 x coil, with the resistances of the robot's profile.
@@ -19,11 +19,21 @@ Fields = dict[str, Any]
 
 
 def driven(recording: Recording, profile: Profile) -> Fields:
-    """Return the fields about coils and joints; nothing about what the robot has not."""
+    """Return the fields about coils, joints, load cell and force cells; nothing about what the robot has not."""
     fields: Fields = {}
     if profile.coil_labels:
         fields = {"coils": coils(recording, profile), "energy_is": ENERGY}
-    return {**fields, "joints": joints(recording, profile)} if profile.joint_labels else fields
+    if profile.joint_labels:
+        fields["joints"] = joints(recording, profile)
+    if profile.load:
+        forces = [record.load_n for record in recording.telemetry if record.load_n is not None]
+        fields["force"] = {"most_n": max(forces, default=None), "least_n": min(forces, default=None)}
+    if profile.cells:
+        pressures = list(zip(*(record.cell_kpa for record in recording.telemetry), strict=True))
+        fields["cells"] = {
+            label: {"most_kpa": max(pressures[i]) if pressures else None} for i, label in enumerate(profile.cell_labels)
+        }
+    return fields
 
 
 def coils(recording: Recording, profile: Profile) -> dict[str, Fields]:
@@ -46,18 +56,18 @@ def coils(recording: Recording, profile: Profile) -> dict[str, Fields]:
 
 
 def joints(recording: Recording, profile: Profile) -> dict[str, Fields]:
-    """Return of each joint for how long it was driven, between which angles it was, and its largest current."""
+    """Return of each joint for how long it was driven, between which positions it was, and its largest current."""
     driven_s = [0.0] * len(profile.joint_labels)
     for held_s, record in _held(recording.telemetry):
-        for i, commanded_deg in enumerate(record.commanded_deg):
-            driven_s[i] += 0.0 if commanded_deg is None else held_s
-    angles = list(zip(*(record.joint_deg for record in recording.telemetry), strict=True))
+        for i, commanded in enumerate(record.commanded_position):
+            driven_s[i] += 0.0 if commanded is None else held_s
+    positions = list(zip(*(record.joint_position for record in recording.telemetry), strict=True))
     currents = list(zip(*(record.joint_ma for record in recording.telemetry), strict=True))
     return {
         label: {
             "driven_s": round(driven_s[i], 3),
-            "least_deg": min(angles[i]) if angles else None,
-            "most_deg": max(angles[i]) if angles else None,
+            f"least_{profile.unit}": min(positions[i]) if positions else None,
+            f"most_{profile.unit}": max(positions[i]) if positions else None,
             "peak_ma": max(currents[i]) if currents else None,
         }
         for i, label in enumerate(profile.joint_labels)
@@ -65,7 +75,7 @@ def joints(recording: Recording, profile: Profile) -> dict[str, Fields]:
 
 
 def driven_lines(fields: Fields) -> Iterator[str]:
-    """Yield a table of the coils that were on, and one of all joints."""
+    """Yield a table of the coils that were on, one of all joints, and a line of each sort of cell."""
     if "coils" in fields:
         yield "  coil    on time   energy   peak (estimate)"
     for label, coil in fields.get("coils", {}).items():
@@ -77,8 +87,21 @@ def driven_lines(fields: Fields) -> Iterator[str]:
     for label, joint in fields.get("joints", {}).items():
         row = f"  {label:<6}{joint['driven_s']:7.2f} s"
         if joint["peak_ma"] is not None:
-            row += f"{joint['least_deg']:8.2f} deg{joint['most_deg']:8.2f} deg{joint['peak_ma'] / 1000:13.2f} A"
+            unit = "mm" if "least_mm" in joint else "deg"
+            least, most = (f"{joint[f'{side}_{unit}']:.2f} {unit}" for side in ("least", "most"))
+            row += f"{least:>12}{most:>12}{joint['peak_ma'] / 1000:13.2f} A"
         yield row
+    yield from _felt_lines(fields.get("force", {}), fields.get("cells", {}))
+
+
+def _felt_lines(force: Fields, cells: Fields) -> Iterator[str]:
+    """Yield what load cell and force cells felt, and what was asked for."""
+    if force.get("most_n") is not None:
+        asked = f", asked for {force['asked_n']:g} N" if force.get("asked_n") is not None else ""
+        yield f"  force            {force['least_n']:.2f} to {force['most_n']:.2f} N{asked}"
+    told = [f"{label} {cell['most_kpa']:.2f}" for label, cell in cells.items() if cell["most_kpa"] is not None]
+    if told:
+        yield f"  cells at most    {', '.join(told)} kPa"
 
 
 def _held(records: list[Telemetry]) -> Iterator[tuple[float, Telemetry]]:

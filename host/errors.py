@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from protocol import causes, codes
 
+WHOLE = (("0.01 ", "", 100), ("mN", "N", 1000))  # of units that are told in whole ones: which, how many parts
 NONE = 255  # channel number of an answer that is about no channel
 
 
@@ -55,18 +56,25 @@ class NotOurs(NoRobot):
 class Refused(SoftrigError):
     """The robot refused an order; nothing changed. `row` is its row in the table of codes.
 
-    `coil` is the label of the channel that it is about, of that `kind`: coil or joint.
+    `coil` is the label of the channel that it is about, of that `kind`: coil or joint; `unit` is that of joints.
     """
 
     exit_code = 4
 
     def __init__(
-        self, request: str, code: int, value: int = 0, limit: int = 0, coil: str | None = None, kind: str = "coil"
+        self,
+        request: str,
+        code: int,
+        value: int = 0,
+        limit: int = 0,
+        coil: str | None = None,
+        kind: str = "coil",
+        unit: str = "deg",
     ) -> None:
         self.code, self.value, self.limit, self.coil = code, value, limit, coil
         self.row = causes.row(code)
         where = f" ({kind} {coil})" if coil else ""
-        super().__init__(f"{request}{where} refused: {_told(code, value, limit)}")
+        super().__init__(f"{request}{where} refused: {_told(code, unit, value, limit)}")
 
 
 class NotPaired(SoftrigError):
@@ -97,10 +105,12 @@ class RobotFault(SoftrigError):
 
     exit_code = 6
 
-    def __init__(self, code: int, value: int = 0, coil: str | None = None, kind: str = "coil") -> None:
+    def __init__(
+        self, code: int, value: int = 0, coil: str | None = None, kind: str = "coil", unit: str = "deg"
+    ) -> None:
         self.code, self.value, self.coil = code, value, coil
         self.row = causes.row(code)
-        super().__init__(f"the robot tripped{f' ({kind} {coil})' if coil else ''}: {_told(code, value)}")
+        super().__init__(f"the robot tripped{f' ({kind} {coil})' if coil else ''}: {_told(code, unit, value)}")
 
 
 class LinkLost(SoftrigError):
@@ -115,24 +125,30 @@ class Interrupted(SoftrigError):
     exit_code = 130
 
 
+def unit_of(row: causes.Code | None, joints: str) -> str:
+    """Return the unit of the figures beside a code, "": none; `joints` is that of the robot's joints."""
+    unit: str = row.unit if row else ""
+    return unit.replace("centi", f"0.01 {joints}") if unit.startswith("centi") else unit
+
+
 def amount(value: int, unit: str) -> str:
-    """Return a figure beside a code with its unit; degrees, which go over the wire in hundredths, in degrees."""
-    return f"{_plain(value, unit)} {unit.removeprefix('centi')}"
+    """Return a figure beside a code with its unit; hundredths of a joint's unit in that unit, mN in N."""
+    for told, whole, parts in WHOLE:
+        if unit.startswith(told):
+            return f"{value / parts:g} {unit.replace(told, whole)}"
+    return f"{value} {unit}"
 
 
-def _told(code: int, value: int, limit: int = 0) -> str:
+def _told(code: int, joints: str, value: int, limit: int = 0) -> str:
     """Return `F05 A coil's estimated temperature is above its limit. 1123 0.1 C. Lower duty ...`."""
     row = causes.row(code)
     if row is None:
         return f"code {code}, unknown to this version; update softrig"
     bound = "at least" if value < limit else "at most"
-    beyond = f", {bound} {_plain(limit, row.unit)}" if limit or row.number == codes.RANGE_LIMIT else ""
-    figures = f" {amount(value, row.unit)}{beyond}." if row.unit else ""
+    unit = unit_of(row, joints)
+    beyond = f", {bound} {amount(limit, unit).split()[0]}" if limit or row.number == codes.RANGE_LIMIT else ""
+    figures = f" {amount(value, unit)}{beyond}." if unit else ""
     return f"{row.name} {_cause(row, value)}{figures} {row.todo}"
-
-
-def _plain(value: int, unit: str) -> str:
-    return f"{value / 100:g}" if unit.startswith("centideg") else str(value)
 
 
 def _cause(row: causes.Code, value: int) -> str:

@@ -36,6 +36,7 @@ NS_PER_MS = 1_000_000
 NUMBER, TEXT, MAYBE = {"type": "number"}, {"type": "string"}, {"type": ["number", "null"]}
 BY_LABEL = {"type": "object", "additionalProperties": NUMBER}
 PACKED = {"type": "string", "contentEncoding": "base64"}
+MAYBE_BY_LABEL = {"type": "object", "additionalProperties": MAYBE}
 COORDINATES = {"type": "array", "items": {"type": "array", "items": NUMBER}}
 TOPICS: dict[str, dict[str, Any]] = {
     "bytes": {
@@ -52,10 +53,11 @@ TOPICS: dict[str, dict[str, Any]] = {
         "roll_deg": MAYBE,
         "pitch_deg": MAYBE,
         "down": {"type": ["string", "null"]},
-        "joint_deg": BY_LABEL,
-        "commanded_deg": {"type": "object", "additionalProperties": MAYBE},
-        "joint_ma": BY_LABEL,
+        **dict.fromkeys(("joint_deg", "joint_mm", "joint_ma", "cell_kpa"), BY_LABEL),
+        "commanded_deg": MAYBE_BY_LABEL,
+        "commanded_mm": MAYBE_BY_LABEL,
         "object_deg": MAYBE,
+        "load_n": NUMBER,
     },
     "samples": {**dict.fromkeys(("host_ms", "now_ms", "slot"), NUMBER), "values": {"type": "object"}},
     "events": {

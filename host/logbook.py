@@ -23,8 +23,9 @@ from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
 from host.errors import BadRequest
+from host.profile import UNITS
 from host.recording import Recording
-from host.records import PER_COIL, PER_JOINT, Event, Telemetry
+from host.records import PER_CELL, PER_COIL, PER_JOINT, Event, Telemetry, column
 
 Row = dict[str, Any]
 RECORD_MAX = 1 << 28  # bytes; a greater length is damage
@@ -44,21 +45,20 @@ class Log:
         rows = self.rows.get("telemetry", ())
         return tuple(rows[0].get(name, ())) if rows else ()
 
+    def unit(self) -> str:
+        """Return the unit of the joints' positions."""
+        return next((unit for unit in UNITS if self.labels(column("joint_position", unit))), UNITS[0])
+
     def recording(self) -> Recording:
         """Return the run as pictures look back on it."""
-        recording = Recording(self.labels(), title=self.title(), joints=self.labels("joint_deg"))
+        recording = Recording(self.labels(), title=self.title(), joints=self.labels("joint_ma"))
+        recording.unit, recording.cells = self.unit(), self.labels("cell_kpa")
         recording.scenes += self.rows.get("scenes", ())
-        recording.telemetry += [_telemetry(row) for row in self.rows.get("telemetry", ())]
+        recording.telemetry += [_telemetry(row, recording.unit) for row in self.rows.get("telemetry", ())]
         recording.events += [Event(**row) for row in self.rows.get("events", ())]
+        self._see_inside(recording)
         return recording
 
-    def title(self) -> str:
-        """Return what the run was: its script and address, or the name of the file."""
-        versions = json.loads(self.attachments.get("versions.json", b"{}"))
-        return f"{Path(versions['script']).name} on {versions['address']}" if "script" in versions else self.path.name
-        self._see_inside(recording)
-
-    def info(self) -> Row:
     def _see_inside(self, recording: Recording) -> None:
         """Add mesh and slices, where the log has them; rows that are damaged end them."""
         if "mesh" not in self.rows:
@@ -70,6 +70,12 @@ class Log:
             for row in self.rows.get("fields", ()):
                 recording.slices.append(slice_from(row, recording.mesh))
 
+    def title(self) -> str:
+        """Return what the run was: its script and address, or the name of the file."""
+        versions = json.loads(self.attachments.get("versions.json", b"{}"))
+        return f"{Path(versions['script']).name} on {versions['address']}" if "script" in versions else self.path.name
+
+    def info(self) -> Row:
         """Return what is in the log."""
         times = [row["host_ms"] for rows in self.rows.values() for row in rows]
         return {
@@ -125,9 +131,11 @@ def _read(file: IO[bytes], log: Log) -> bool:
     return True
 
 
-def _telemetry(row: Row) -> Telemetry:
-    by_label = {name: tuple(row.get(name, {}).values()) for name in (*PER_COIL, *PER_JOINT)}
-    return Telemetry(**{**row, **by_label})
+def _telemetry(row: Row, unit: str) -> Telemetry:
+    named = {name: column(name, unit) for name in (*PER_COIL, *PER_JOINT, *PER_CELL)}
+    by_label = {name: tuple(row.get(told, {}).values()) for name, told in named.items()}
+    rest = {name: value for name, value in row.items() if name not in named.values()}
+    return Telemetry(**{**rest, **by_label})
 
 
 def _flat(row: Row, before: str = "") -> Iterator[tuple[str, Any]]:

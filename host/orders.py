@@ -21,7 +21,8 @@ from protocol import codes, messages
 PIECE = 192  # bytes of code in a message
 PIECES_AHEAD = 4
 WORD_MAX = 0xFFFF
-ANGLE_MAX_CENTIDEG = 0x7FFF
+LONG_MAX = 0xFFFFFFFF
+CENTI_MAX = 0x7FFF  # of an angle or a position
 
 Kind = TypeVar("Kind")
 
@@ -70,16 +71,17 @@ class Orders:
         self.talk.order(messages.FIRE, coils=mask, duty_permille=duty_permille, hold_ms=hold_ms)
 
     def move(self, joints: Iterable[str], target_centi: int, over_ms: int, hold_ms: int) -> None:
-        """Turn these joints or groups on a straight line, then hold them for that long; then they go limp.
+        """Bring these joints or groups on a straight line to a position in hundredths of their unit, then hold them.
 
-        A joint that is limp sets out from where it is and may take longer: it never turns faster than it may.
+        After `hold_ms` they go limp. A joint that is limp sets out from where it is and may take longer: it never goes
+        faster than it may.
         """
         mask, limits = self.profile.joint_mask(joints), self.profile.servo
         _writable("over", over_ms)
-        _within("move", codes.HOLD_LIMIT, hold_ms, limits.hold_max_ms)
-        if abs(target_centi) > ANGLE_MAX_CENTIDEG:
+        _within("move", codes.HOLD_LIMIT, hold_ms, limits.hold_max_ms, LONG_MAX)
+        if abs(target_centi) > CENTI_MAX:
             limit = limits.least_centi if target_centi < 0 else limits.most_centi
-            raise Refused("move", codes.RANGE_LIMIT, target_centi, limit)
+            raise Refused("move", codes.RANGE_LIMIT, target_centi, limit, unit=limits.unit)
         self.talk.order(messages.MOVE, joints=mask, target_centi=target_centi, over_ms=over_ms, hold_ms=hold_ms)
 
     def orient(self, target_centideg: int, time_ms: int, hold_ms: int) -> None:
@@ -89,11 +91,26 @@ class Orders:
         """
         limits = self.profile.servo
         _writable("for", time_ms)
-        _within("orient", codes.HOLD_LIMIT, hold_ms, limits.hold_max_ms)
-        if abs(target_centideg) > ANGLE_MAX_CENTIDEG:
-            most_deg = ANGLE_MAX_CENTIDEG / 100
+        _within("orient", codes.HOLD_LIMIT, hold_ms, limits.hold_max_ms, LONG_MAX)
+        if abs(target_centideg) > CENTI_MAX:
+            most_deg = CENTI_MAX / 100
             raise BadRequest(f"orient to {target_centideg / 100:g} deg: at most {most_deg:g} deg either way")
         self.talk.order(messages.ORIENT, target_centideg=target_centideg, time_ms=time_ms, hold_ms=hold_ms)
+
+    def press(self, target_mn: int, over_ms: int, time_ms: int, hold_ms: int) -> None:
+        """Press with a force, reached on a straight line within `over_ms` and regulated until `time_ms` has passed.
+
+        Then the axis holds where it stands for `hold_ms`, and stays there when it is limp.
+        """
+        limits, load = self.profile.servo, self.profile.load
+        if target_mn < 0:
+            raise BadRequest(f"press with {target_mn / 1000:g} N: a press cannot pull; lift it with a move")
+        if load:
+            _within("press", codes.FORCE_LIMIT, target_mn, load.most_mn)
+        _writable("over", over_ms)
+        _writable("for", time_ms, LONG_MAX)
+        _within("press", codes.HOLD_LIMIT, hold_ms, limits.hold_max_ms, LONG_MAX)
+        self.talk.order(messages.PRESS, target_mn=target_mn, over_ms=over_ms, time_ms=time_ms, hold_ms=hold_ms)
 
     def faults(self) -> list[Fault]:
         """Return the faults that the robot has kept over resets and power cuts, newest first."""
@@ -185,13 +202,13 @@ def _expected(kind: type[Kind], answer: Answer | None, what: str) -> Kind:
     return answer
 
 
-def _writable(what: str, time_ms: int) -> None:
+def _writable(what: str, time_ms: int, most_ms: int = WORD_MAX) -> None:
     """Refuse a time that its message cannot carry."""
-    if time_ms > WORD_MAX:
-        raise BadRequest(f"{what} {time_ms} ms: at most {WORD_MAX} ms in one order")
+    if time_ms > most_ms:
+        raise BadRequest(f"{what} {time_ms} ms: at most {most_ms} ms in one order")
 
 
-def _within(request: str, code: int, value: int, limit: int) -> None:
+def _within(request: str, code: int, value: int, limit: int, most: int = WORD_MAX) -> None:
     """Refuse, as the robot would, a value that is beyond what its message can carry."""
-    if value > WORD_MAX:
+    if value > most:
         raise Refused(request, code, value, limit)

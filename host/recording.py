@@ -26,7 +26,10 @@ Scene = dict[str, Any]
 
 @dataclass(slots=True)
 class Recording:
-    """What was seen of one run; `labels` are the coils and `joints` the joints in the order of the telemetry."""
+    """What was seen of one run; `labels` are the coils, `joints` the joints, `cells` the force cells of the telemetry.
+
+    `unit` is that of the joints' positions.
+    """
 
     labels: tuple[str, ...]
     title: str = ""
@@ -34,14 +37,16 @@ class Recording:
     events: list[Event] = field(default_factory=list)
     scenes: list[Scene] = field(default_factory=list)
     joints: tuple[str, ...] = ()
+    unit: str = "deg"
+    cells: tuple[str, ...] = ()
     at_end: Scene | None = None  # of joints: what the observer observed when the program ended, and they still held
+    mesh: Mesh | None = None  # of the body, where an observer sees inside it
+    slices: list[Slice] = field(default_factory=list)
 
     def note(self, record: object) -> None:
         """Keep a record that pictures need; others are passed over."""
         if isinstance(record, Telemetry):
             self.telemetry.append(record)
-    mesh: Mesh | None = None  # of the body, where an observer sees inside it
-    slices: list[Slice] = field(default_factory=list)
         elif isinstance(record, Event):
             self.events.append(record)
 

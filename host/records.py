@@ -1,7 +1,7 @@
 """What a robot tells its host, decoded: telemetry, events, status and the answer to a stop.
 
 Times carry both clocks: `host_ms` is the host's at arrival, `now_ms` the robot's at sending. Units are the wire's,
-except temperatures, which are whole degrees and tenths.
+except temperatures, angles, positions, forces and pressures, which are whole units and parts of them.
 """
 
 from __future__ import annotations
@@ -29,10 +29,12 @@ class Telemetry:
     roll_deg: float | None = None  # None, as the two below: the robot does not know how it lies
     pitch_deg: float | None = None
     down: str | None = None  # the coil whose direction is nearest to down
-    joint_deg: tuple[float, ...] = ()
-    commanded_deg: tuple[float | None, ...] = ()  # None: the joint is limp
+    joint_position: tuple[float, ...] = ()  # in the joints' unit, as the next one
+    commanded_position: tuple[float | None, ...] = ()  # None: the joint is limp
     joint_ma: tuple[int, ...] = ()
     object_deg: float | None = None  # None: there is no camera, or it does not see the object
+    load_n: float | None = None  # None: there is no load cell
+    cell_kpa: tuple[float, ...] = ()  # of the force cells
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +98,9 @@ class Sample:
 
 
 PER_COIL = ("duty_permille", "temperature_degc")  # of telemetry
-PER_JOINT = ("joint_deg", "commanded_deg", "joint_ma")
+PER_JOINT = ("joint_position", "commanded_position", "joint_ma")
+PER_CELL = ("cell_kpa",)
+IN_UNIT = {"joint_position": "joint", "commanded_position": "commanded"}  # begin the names that end in the joints' unit
 USUAL_NAMES = tuple(variables.VARIABLES[number].name for number in variables.USUAL)
 
 Record = Telemetry | Sample | Event | Stopped
@@ -116,23 +120,29 @@ def telemetry_of(values: list[Any], parts: Parts, host_ms: int, now_ms: int) -> 
         told["duty_permille"],
         tuple([decidegc / 10 for decidegc in told["coil_decidegc"]]),
         **_attitude(told["roll_decideg"], told["pitch_decideg"], told["down"], parts.channels),
-        joint_deg=tuple([centideg / 100 for centideg in told["joint_centi"]]),
-        commanded_deg=tuple([_angle_deg(centideg) for centideg in told["commanded_centi"]]),
+        joint_position=tuple([centi / 100 for centi in told["joint_centi"]]),
+        commanded_position=tuple([_known(centi) for centi in told["commanded_centi"]]),
         joint_ma=told["joint_ma"],
-        object_deg=_angle_deg(*told["object_centideg"]),
+        object_deg=_known(*told["object_centideg"]),
+        load_n=told["load_mn"][0] / 1000 if told["load_mn"] else None,
+        cell_kpa=tuple([pa / 1000 for pa in told["cell_pa"]]),
     )
 
 
 def sample_of(
     slot: int, numbers: tuple[int, ...], values: list[Any], parts: Parts, host_ms: int, now_ms: int
 ) -> Sample:
-    """Return the record of these variables; a state is told by its name, what only a camera tells by None without."""
+    """Return the record of these variables: of several of a kind by label, a state by its name.
+
+    What only a camera or a load cell tells is None on a robot without.
+    """
     named: dict[str, Any] = {}
+    labels = {"*": parts.coils, "+": parts.joints, "#": parts.cells}
     for number, value in zip(numbers, values, strict=True):
         name, letter = variables.VARIABLES[number]
-        if letter.endswith(("*", "+")):
-            named[name] = dict(zip(parts.coils if letter.endswith("*") else parts.joints, value, strict=True))
-        elif letter.endswith("@"):
+        if letter[1:] in labels:
+            named[name] = dict(zip(labels[letter[1:]], value, strict=True))
+        elif letter.endswith(("@", "!")):
             named[name] = value[0] if value else None
         else:
             named[name] = state_name(value) if name == "state" else value
@@ -181,9 +191,9 @@ def _attitude(roll_decideg: int, pitch_decideg: int, down: int, labels: tuple[st
     return {"roll_deg": roll_decideg / 10, "pitch_deg": pitch_decideg / 10, "down": channel_name(down, labels)}
 
 
-def _angle_deg(centideg: int = variables.UNKNOWN_ANGLE) -> float | None:
-    """Return an angle, or None where the robot says that there is none, or nothing."""
-    return None if centideg == variables.UNKNOWN_ANGLE else centideg / 100
+def _known(centi: int = variables.UNKNOWN_ANGLE) -> float | None:
+    """Return an angle or a position, or None where the robot says that there is none, or nothing."""
+    return None if centi == variables.UNKNOWN_ANGLE else centi / 100
 
 
 def state_name(state: int) -> str:
@@ -218,17 +228,22 @@ def as_json(record: Any) -> dict[str, Any]:
 
 
 def row_of(record: Record, parts: Parts) -> dict[str, Any]:
-    """Return the record's fields by name, with what there is for each coil or joint by its label.
+    """Return the record's fields by name, with what there is for each coil, joint or force cell by its label.
 
-    What the robot has none of is left out.
+    Where joints are says the unit: `joint_deg`, or `joint_mm`. What the robot has none of is left out.
     """
     row = as_json(record)
     if not isinstance(record, Telemetry):
         return row
-    for names, labels in ((PER_COIL, parts.coils), (PER_JOINT, parts.joints)):
+    single = {"object_deg": (row.pop("object_deg"), parts.cameras), "load_n": (row.pop("load_n"), parts.loads)}
+    for names, labels in ((PER_COIL, parts.coils), (PER_JOINT, parts.joints), (PER_CELL, parts.cells)):
         for name in names:
             values = row.pop(name)
             if labels:
-                row[name] = dict(zip(labels, values, strict=False))
-    seen = row.pop("object_deg")
-    return {**row, "object_deg": seen} if parts.cameras else row
+                row[column(name, parts.unit)] = dict(zip(labels, values, strict=False))
+    return {**row, **{name: value for name, (value, present) in single.items() if present}}
+
+
+def column(name: str, unit: str) -> str:
+    """Return what a field of Telemetry is called in rows of a robot whose joints count in that unit."""
+    return f"{IN_UNIT[name]}_{unit}" if name in IN_UNIT else name

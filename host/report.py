@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from host.drivenreport import driven, driven_lines
-from host.errors import amount
+from host.errors import amount, unit_of
 from host.gait.compiler import Compiled
 from host.linereport import interruption, line_lines
 from host.observed import observed, observed_lines
@@ -77,7 +77,7 @@ def fault(event: Event, recording: Recording, compiled: Compiled) -> Fields:
         "cause": row.cause if row else "unknown to this version",
         "coil": event.coil,
         "value": event.value,
-        "unit": row.unit if row else "",
+        "unit": unit_of(row, compiled.profile.unit),
         "at_s": recording.seconds(event.host_ms),
         "line": step.place.line if step else None,
     }

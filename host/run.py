@@ -49,8 +49,9 @@ class Keeper:
             observer.watch(self.glance)
 
     def know(self, parts: Parts) -> None:
-        """Take the labels of the robot's coils and joints, once it has told them."""
+        """Take the labels of what the robot has, once it has told them."""
         self.recording.labels, self.recording.joints = parts.coils, parts.joints
+        self.recording.unit, self.recording.cells = parts.unit, parts.cells
         if self._log:
             self._log.parts = parts
 
@@ -68,10 +69,10 @@ class Keeper:
             return
         if self._scenes and isinstance(record, Telemetry):
             self._keep(self._observer.snapshot(), record.host_ms)
-        if self.recording.joints and isinstance(record, Event) and record.event in ENDS and not self.recording.at_end:
             self._slicing.look(record.host_ms)
         if isinstance(record, Event) and record.event in ("started", *ENDS):
             self._slicing.take(record.host_ms)
+        if self.recording.joints and isinstance(record, Event) and record.event in ENDS and not self.recording.at_end:
             self.recording.at_end = self._observer.observe()
 
     def link(self, news: LinkNews) -> None:
@@ -83,8 +84,8 @@ class Keeper:
         """Keep what the observer sees, once telemetry comes: slices when due, else if the body moves quickly."""
         if not self.recording.telemetry:
             return
-        snapshot = self._observer.snapshot()
         self._slicing.look(host_ms)
+        snapshot = self._observer.snapshot()
         if self._attention.stirs(snapshot):
             self._keep(snapshot, host_ms)
 
@@ -98,7 +99,6 @@ class Keeper:
         if self._log:
             self._log.scene(scenes[-1])
 
-
     def _keep_slice(self, mesh: Mesh, taken: Slice) -> None:
         """Keep what the observer sees inside the body."""
         if self._log and self.recording.mesh is None:
@@ -108,6 +108,7 @@ class Keeper:
         if self._log:
             self._log.slice(taken)
 
+
 @dataclass(frozen=True, slots=True)
 class Ending:
     """How a run ended; `event` is the robot's last word, about a channel of that `kind`; `lost` why there is none."""
@@ -116,6 +117,7 @@ class Ending:
     event: Event | None = None
     lost: LinkLost | None = None
     kind: str = "coil"
+    unit: str = "deg"  # of joints
 
     def error(self) -> SoftrigError | None:
         """Return what the caller should raise, or None when the script ran to its end."""
@@ -125,7 +127,7 @@ class Ending:
             return ScriptFailed(f"the script ended early: {_cause(self.event)}")
         if self.result == "lease":
             return LinkLost("the robot heard nothing from this host for its lease and switched everything off")
-        return RobotFault(self.event.code, self.event.value, self.event.coil, self.kind)
+        return RobotFault(self.event.code, self.event.value, self.event.coil, self.kind, self.unit)
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +166,8 @@ def watch(robot: Robot, progress: Progress, if_lost: IfLost) -> Ending:
     if if_lost.stops and robot.interruptions() and event.code == codes.STOP:
         cause = robot.interruptions()[-1].cause
         return Ending("link lost", event, LinkLost(f"{cause}; once it was back, the robot was stopped, as asked"))
-    return Ending(_result(event), event, kind=robot.profile.parts.kind(event.coil))
+    parts = robot.profile.parts
+    return Ending(_result(event), event, kind=parts.kind(event.coil), unit=parts.unit)
 
 
 def outliving(code: bytes) -> bytes:

@@ -53,6 +53,8 @@ class FakeRobot:
         self.duty = [0] * len(self.parts.coils)
         self.joints = [FakeJoint() for _ in self.parts.joints]
         self.object_centideg = 0
+        self.load_mn = 0
+        self.cell_pa = [0] * len(self.parts.cells)
         self.period_ms = 0
         self.count = 0  # of telemetry
         self.supply_mv = 2000
@@ -137,7 +139,7 @@ class FakeRobot:
             for i in range(len(self.duty)):
                 if order.coils >> i & 1:
                     self.duty[i], self._until[i] = order.duty_permille, now_ms + order.hold_ms
-        elif message in (messages.MOVE, messages.ORIENT):
+        elif message in (messages.MOVE, messages.ORIENT, messages.PRESS):
             self._turn(message, order, now_ms)
         elif message is messages.CODE:
             self.code += order.code
@@ -148,11 +150,19 @@ class FakeRobot:
     def _turn(self, message, order, now_ms: int) -> None:
         if message is messages.ORIENT:
             self.object_centideg = order.target_centideg
+        if message is messages.PRESS:
+            self._press(order.target_mn)
         for i, joint in enumerate(self.joints):
             if message is messages.ORIENT:
                 joint.move(joint.commanded_centi - order.target_centideg, now_ms + order.time_ms, order.hold_ms)
+            elif message is messages.PRESS:
+                joint.move(order.target_mn // 10, now_ms + order.time_ms, order.hold_ms)
             elif order.joints >> len(self.duty) + i & 1:
                 joint.move(order.target_centi, now_ms + order.over_ms, order.hold_ms)
+
+    def _press(self, target_mn: int) -> None:
+        """Feel that force at once, 1 kPa in each force cell for each newton, and give way 1 mm for each."""
+        self.load_mn, self.cell_pa = target_mn, [target_mn] * len(self.cell_pa)
 
     def _go_on(self, now_ms: int) -> None:
         for i, until_ms in list(self._until.items()):
@@ -173,12 +183,14 @@ class FakeRobot:
     def telemetry(self, late_ms: int = 0) -> None:
         """Send telemetry, or what is that late."""
         degrees = [250 + duty for duty in self.duty]
-        counts = variables.parts(len(self.duty), len(self.joints), self.parts.cameras)
+        parts = self.parts
+        counts = variables.Parts(len(self.duty), len(self.joints), parts.cameras, parts.loads, len(parts.cells))
         values = variables.veiled(struct.pack(
             variables.layout(variables.USUAL, counts),
             self.state, 0, self.supply_mv, 0, 231, *self.attitude.values(), *self.duty, *degrees,
             *[joint.centi for joint in self.joints], *[joint.commanded_centi for joint in self.joints],
-            *[joint.ma for joint in self.joints], *[self.object_centideg] * self.parts.cameras,
+            *[joint.ma for joint in self.joints], *[self.object_centideg] * parts.cameras,
+            *[self.load_mn] * parts.loads, *self.cell_pa,
         ))  # fmt: skip
         now_ms = (self.uptime_ms - late_ms) & 0xFFFFFFFF
         self._post(messages.TELEMETRY, slot=0, form=0, count=self.count, now_ms=now_ms, values=values)
@@ -230,7 +242,14 @@ def _parts_of(profile: bytes) -> Parts:
     """Return the parts that a profile names, also one that is not good enough for a host."""
     data = json.loads(profile)
     labels = [tuple(row["label"] for row in data["channels"] if row["kind"] == kind) for kind in ("sma", "servo")]
-    return Parts(labels[0] + labels[1], *labels, int("camera" in data))
+    return Parts(
+        labels[0] + labels[1],
+        *labels,
+        cameras=int("camera" in data),
+        loads=int("load" in data),
+        cells=tuple(row["label"] for row in data.get("cells", ())),
+        unit=data.get("servo", {}).get("unit", "deg"),
+    )
 
 
 class FakeJoint:

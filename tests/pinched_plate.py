@@ -154,8 +154,8 @@ def _telemetry(plate, now_ms):
         board_degc=26.5,
         duty_permille=(),
         temperature_degc=(),
-        joint_deg=tuple(round(angle, 2) for angle in deg),
-        commanded_deg=deg,
+        joint_position=tuple(round(angle, 2) for angle in deg),
+        commanded_position=deg,
         joint_ma=joint_ma,
         object_deg=round(plate.object_deg(), 2),
     )

@@ -26,10 +26,10 @@ SEEN = {
 }
 
 
-def record(now_ms, deg, commanded_deg, ma) -> Telemetry:
+def record(now_ms, deg, commanded, ma) -> Telemetry:
     return Telemetry(
         now_ms, now_ms, "running", 1, 6000, 100, 25.0, (), (),
-        joint_deg=(deg, -deg), commanded_deg=(commanded_deg, None), joint_ma=(ma, 20),
+        joint_position=(deg, -deg), commanded_position=(commanded, None), joint_ma=(ma, 20),
     )  # fmt: skip
 
 

@@ -27,8 +27,9 @@ COMMANDS = {
     "arm": "Take a robot's lease, so that it takes orders.",
     "disarm": "Switch everything off and return the lease.",
     "fire": "Heat coils for a limited time.",
-    "move": "Turn joints to an angle and hold them there for a limited time.",
+    "move": "Bring joints to a position and hold them there for a limited time.",
     "orient": "Turn an object that two joints grip, by what the camera sees.",
+    "press": "Press with a force that the robot regulates by its load cell.",
     "stop": "Switch everything off at once, from any state.",
     "sync": "Start the robots that wait for one word, together.",
     "clear": "Leave the tripped state after a stop or a fault.",
@@ -96,7 +97,7 @@ class Softrig(click.Group):
 @click.group(cls=Softrig, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(package_name="softrig", prog_name="softrig")
 def main() -> None:
-    """Run soft robots with shape-memory coils or finger joints, on the bench and on the table.
+    """Run soft robots with shape-memory coils, finger joints or a press, on the bench and on the table.
 
     A robot is named by its address: sim:circular (a bench in this process), /dev/ttyACM0, socket://127.0.0.1:7000.
     Exit status: 0 done, 1 script failed, 2 usage, 3 no robot, 4 refused, 5 other protocol, 6 robot fault, 7 link lost,

@@ -6,9 +6,11 @@ import click
 
 from host.cli.options import json_option
 from host.cli.output import emit
-from host.errors import BadRequest
+from host.errors import BadRequest, unit_of
 from host.gait import errors
 from protocol import causes
+
+JOINTS = "of the joint's unit"
 
 
 @click.command("explain")
@@ -35,7 +37,7 @@ def _rows() -> dict[str, dict[str, str]]:
     """Return all rows of both tables by their code."""
     scripts = [{"code": row.code, "cause": row.cause, "todo": row.todo} for row in errors.ROWS]
     robots = [
-        {"code": row.name, "cause": row.cause, "did": row.did, "todo": row.todo, "unit": row.unit}
+        {"code": row.name, "cause": row.cause, "did": row.did, "todo": row.todo, "unit": unit_of(row, JOINTS)}
         for row in causes.CODES
     ]
     return {row["code"]: row for row in [*scripts, *robots]}

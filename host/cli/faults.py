@@ -10,7 +10,7 @@ import click
 from host.cli.connection import connected
 from host.cli.options import json_option, robot_option
 from host.cli.output import emit
-from host.errors import amount
+from host.errors import amount, unit_of
 from host.kept import Fault
 from host.profile import Parts
 from protocol import causes
@@ -30,12 +30,13 @@ def command(robot: str, as_json: bool, clear: bool) -> None:
         if clear:
             face.clear_faults()
         parts = face.profile.parts
-    emit(as_json, {"faults": [_fields(fault) for fault in faults], "cleared": clear}, _lines(faults, clear, parts))
+    told = [_fields(fault, parts) for fault in faults]
+    emit(as_json, {"faults": told, "cleared": clear}, _lines(faults, clear, parts))
 
 
-def _fields(fault: Fault) -> dict[str, object]:
+def _fields(fault: Fault, parts: Parts) -> dict[str, object]:
     row = causes.row(fault.code)
-    return {**asdict(fault), "code": row.name if row else fault.code, "unit": row.unit if row else ""}
+    return {**asdict(fault), "code": row.name if row else fault.code, "unit": unit_of(row, parts.unit)}
 
 
 def _lines(faults: list[Fault], cleared: bool, parts: Parts) -> Iterator[str]:
@@ -45,7 +46,8 @@ def _lines(faults: list[Fault], cleared: bool, parts: Parts) -> Iterator[str]:
         row = causes.row(fault.code)
         what = f"{row.name} {row.cause}" if row else f"code {fault.code}, unknown to this version"
         where = f", {parts.kind(fault.coil)} {fault.coil}" if fault.coil else ""
-        figure = f" ({amount(fault.value, row.unit)})" if row and row.unit else ""
+        unit = unit_of(row, parts.unit)
+        figure = f" ({amount(fault.value, unit)})" if unit else ""
         yield f"start {fault.start} ({fault.cause}), {fault.now_ms / 1000:.3f} s, {fault.state}{where}: {what}{figure}"
     if cleared and faults:
         yield "cleared"

@@ -43,11 +43,12 @@ def command(coils: tuple[str, ...], robot: str, duty: int, hold: int, without: t
 def _peaks(face: Robot, time_ms: int) -> dict[str, float]:
     """Return the highest estimated temperature of each coil within that time; RobotFault when the robot trips."""
     peaks: dict[str, float] = {}
+    parts = face.profile.parts
     for record in face.listen(time_ms):
         if isinstance(record, Event) and record.event == "tripped":
-            raise RobotFault(record.code, record.value, record.coil, face.profile.parts.kind(record.coil))
+            raise RobotFault(record.code, record.value, record.coil, parts.kind(record.coil), parts.unit)
         if isinstance(record, Telemetry):
-            for label, degc in zip(face.profile.coil_labels, record.temperature_degc, strict=False):
+            for label, degc in zip(parts.coils, record.temperature_degc, strict=False):
                 peaks[label] = max(degc, peaks.get(label, degc))
     return peaks
 

@@ -16,7 +16,7 @@ from host.profile import Profile
 
 OF_COILS = ("duty_max_permille", "hold_max_ms", "on_max_ms", "rest_ms", "heat_budget_mj", "trip_degc")
 OF_JOINTS = (
-    "least_centi", "most_centi", "slew_centi_per_s", "hold_max_ms", "stall_ma", "stall_ms", "astray_centi",
+    "unit", "least_centi", "most_centi", "slew_centi_per_s", "hold_max_ms", "stall_ma", "stall_ms", "astray_centi",
     "astray_ms",
 )  # fmt: skip
 
@@ -36,6 +36,7 @@ def command(robot: str, with_dictionary: bool, as_json: bool) -> None:
         fields = {
             "address": robot,
             **face.info(),
+            "cells": list(profile.cell_labels),
             "groups": {name: list(labels) for name, labels in profile.groups.items()},
             "supply_mv": profile.supply_mv,
             "limits": _limits(profile),
@@ -52,8 +53,10 @@ def _limits(profile: Profile) -> dict[str, Any]:
         limits = {name: getattr(profile.coil_limits, name) for name in OF_COILS}
     if profile.servo_limits:
         limits["joint"] = {name: getattr(profile.servo_limits, name) for name in OF_JOINTS}
-    if profile.orient:
-        limits["orient"] = asdict(profile.orient)
+    for name in ("orient", "load", "press", "cell"):
+        section = getattr(profile, name)
+        if section:
+            limits[name] = asdict(section)
     return {
         **limits,
         "current_max_ma": profile.supply.current_max_ma,
@@ -79,6 +82,7 @@ def _lines(fields: dict[str, Any]) -> Iterator[str]:
         yield from _coil_lines(limits)
     if fields["joints"]:
         yield from _joint_lines(limits["joint"], limits.get("orient"))
+    yield from _force_lines(limits, fields["cells"])
     at_once = f", {limits['at_once_max']} coils at once" if fields["coils"] else ""
     yield f"  supply      {fields['supply_mv'] / 1000:g} V, {limits['current_max_ma']} mA{at_once}"
     yield f"  lease       {limits['lease_ms']} ms"
@@ -92,11 +96,24 @@ def _coil_lines(limits: dict[str, Any]) -> Iterator[str]:
 
 
 def _joint_lines(joint: dict[str, Any], orient: dict[str, Any] | None) -> Iterator[str]:
-    least, most, slew = (joint[name] / 100 for name in OF_JOINTS[:3])
-    hold_s = joint["hold_max_ms"] / 1000
-    yield f"  one move    {least:g} to {most:g} deg, at most {slew:g} deg/s, then held for {hold_s:g} s"
+    least, most, slew = (joint[name] / 100 for name in ("least_centi", "most_centi", "slew_centi_per_s"))
+    hold_s, unit = joint["hold_max_ms"] / 1000, joint["unit"]
+    yield f"  one move    {least:g} to {most:g} {unit}, at most {slew:g} {unit}/s, then held for {hold_s:g} s"
     yield f"  stall       trips at {joint['stall_ma']} mA for {joint['stall_ms']} ms"
-    yield f"  astray      trips {joint['astray_centi'] / 100:g} deg beside its order for {joint['astray_ms']} ms"
+    yield f"  astray      trips {joint['astray_centi'] / 100:g} {unit} beside its order for {joint['astray_ms']} ms"
     if orient:
         gain, swing = orient["gain_permille_per_s"] / 1000, orient["swing_max_centideg"] / 100
         yield f"  orient      turns what the joints hold: gain {gain:g} /s, swing at most {swing:g} deg"
+
+
+def _force_lines(limits: dict[str, Any], cells: list[str]) -> Iterator[str]:
+    """Yield what load cell, press and force cells are good for, of a robot that has them."""
+    if "load" in limits:
+        load = limits["load"]
+        yield f"  force       at most {load['most_mn'] / 1000:g} N, trips at {load['trip_mn'] / 1000:g} N"
+    if "press" in limits:
+        press = limits["press"]
+        gain, reset = press["gain_um_per_s_per_n"] / 1000, press["reset_permille_per_s"] / 1000
+        yield f"  press       regulates the force: gain {gain:g} mm/s per N, reset {reset:g} /s"
+    if cells:
+        yield f"  cells       {' '.join(cells)}, up to {limits['cell']['full_pa'] / 1000:g} kPa"

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import click
 
+from host.errors import BadRequest
 from host.keys import read
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -69,9 +70,31 @@ def time_ms(text: str) -> int:
 
 def angle_centideg(text: str) -> int:
     """Return the hundredths of a degree that `8deg`, `-8 deg` or `8` stand for."""
-    bare = str(text).strip()
-    sign = -1 if bare.startswith("-") else 1
-    return sign * _measured(bare[1:] if bare[:1] in ("-", "+") else bare, {"deg": 100})
+    return _signed(text, {"deg": 100})
+
+
+class Position(NamedTuple):
+    """Where a joint is to go, in hundredths of its unit, and the unit that was written, "": none."""
+
+    centi: int
+    unit: str
+
+    def of(self, unit: str) -> int:
+        """Return the hundredths for a robot whose joints count in that unit; BadRequest when another was written."""
+        if self.unit not in ("", unit):
+            raise BadRequest(f"{self.centi / 100:g}{self.unit}: the joints of this robot count in {unit}")
+        return self.centi
+
+
+def position(text: str) -> Position:
+    """Return what `8deg`, `-4 mm` or `8`, in whichever unit the joints have, stand for."""
+    found = re.search(r"[a-z%]*$", str(text).strip(), re.ASCII)
+    return Position(_signed(text, {"mm": 100, "deg": 100}), found[0] if found else "")
+
+
+def force_mn(text: str) -> int:
+    """Return the thousandths of a newton that `5N`, `500 mN` or `5` stand for."""
+    return _measured(text, {"N": 1000, "mN": 1})
 
 
 def duty_permille(text: str) -> int:
@@ -81,10 +104,17 @@ def duty_permille(text: str) -> int:
 
 def _measured(text: str, factors: dict[str, int]) -> int:
     """Return a number in the smallest unit; without a unit it is in the first one."""
-    match = re.fullmatch(r"\s*(\d{1,12}(?:\.\d*)?|\.\d+)\s*([a-z%]*)\s*", str(text), re.ASCII)
+    match = re.fullmatch(r"\s*(\d{1,12}(?:\.\d*)?|\.\d+)\s*([a-zN%]*)\s*", str(text), re.ASCII)
     if match is None or match[2] not in ("", *factors):
         raise click.BadParameter(f"{text!r}: write a number and {' or '.join(factors)}")
     return round(float(match[1]) * (factors[match[2]] if match[2] else next(iter(factors.values()))))
+
+
+def _signed(text: str, factors: dict[str, int]) -> int:
+    """Return a number that may begin with a sign, as above."""
+    bare = str(text).strip()
+    sign = -1 if bare.startswith("-") else 1
+    return sign * _measured(bare[1:] if bare[:1] in ("-", "+") else bare, factors)
 
 
 def _milliseconds(ctx: click.Context, param: click.Parameter, value: str) -> int:

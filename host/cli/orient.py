@@ -75,7 +75,7 @@ def _grip(face: Robot, grip_centideg: int, swing_centideg: int) -> tuple[str, ..
 
 def _swing_deg(motion: Motion, labels: tuple[str, ...]) -> float | None:
     """Return how far both joints have swung together, or None when nothing was heard of them."""
-    angles = [motion.commanded_deg[label] for label in labels if label in motion.commanded_deg]
+    angles = [motion.commanded[label] for label in labels if label in motion.commanded]
     return round(sum(angles) / 2, 2) if len(angles) == 2 else None
 
 
@@ -95,4 +95,4 @@ def _lines(fields: dict[str, Any]) -> Iterator[str]:
     most = fields["swing_max_deg"]
     if swing is not None and most is not None and abs(swing) > most - NEAR_DEG:
         yield f"the swing is at its limit of {most:g} deg: it turns the object no further"
-    yield from lines(fields["joints"])
+    yield from lines(fields["joints"], "deg")

@@ -26,39 +26,51 @@ PERIOD_MS, LISTEN_MS = 50, 500
 def command(robot: str, with_coils: bool, as_json: bool) -> None:
     """Ask a robot for its state, its last fault, its supply and its line.
 
-    Coils are measured by the self-test before arming, and while they are on; joints and what a camera sees always are.
+    Coils are measured by the self-test before arming, and while they are on; what else the robot feels always is.
     """
     with connected(robot) as face:
         status = face.status()
         parts = face.profile.parts
         coils = face.coils() if with_coils and parts.coils else {}
-        joints = _joints(face) if parts.joints else {}
+        felt = _felt(face) if parts.joints or parts.loads or parts.cells else {}
         line = face.statistics()
     fields = {"coils_seen": {label: asdict(coil) for label, coil in coils.items()}} if with_coils else {}
-    lines = [*_joint_lines(joints), *(f"  {label:<11} {coil}" for label, coil in coils.items())]
+    lines = [*_felt_lines(felt, parts.unit), *(f"  {label:<11} {coil}" for label, coil in coils.items())]
     if with_coils and not coils:
         lines.append("  no coils")
-    emit(as_json, {**_fields(status, line), **joints, **fields}, [*_lines(status, line, parts), *lines])
+    emit(as_json, {**_fields(status, line), **felt, **fields}, [*_lines(status, line, parts), *lines])
 
 
-def _joints(face: Robot) -> dict[str, Any]:
-    """Return how each joint stands, and the object if a camera sees it; nothing from a robot that tells none."""
+def _felt(face: Robot) -> dict[str, Any]:
+    """Return how each joint stands, and what camera, load cell and force cells tell; nothing where none is heard."""
     face.overhear(PERIOD_MS)
     heard = next((record for record in face.listen(LISTEN_MS) if isinstance(record, Telemetry)), None)
     face.overhear(0)
     if heard is None:
         return {}
-    rows = zip(face.profile.joint_labels, heard.joint_deg, heard.commanded_deg, heard.joint_ma, strict=True)
-    joints = {label: {"deg": deg, "commanded_deg": told, "ma": ma} for label, deg, told, ma in rows}
-    return {"joints": joints, "object_deg": heard.object_deg}
+    parts = face.profile.parts
+    rows = zip(parts.joints, heard.joint_position, heard.commanded_position, heard.joint_ma, strict=True)
+    told = {
+        "joints": {label: {parts.unit: at, f"commanded_{parts.unit}": to, "ma": ma} for label, at, to, ma in rows},
+        "object_deg": heard.object_deg,
+        "load_n": heard.load_n,
+        "cell_kpa": dict(zip(parts.cells, heard.cell_kpa, strict=True)),
+    }
+    present = {"joints": parts.joints, "object_deg": parts.cameras, "load_n": parts.loads, "cell_kpa": parts.cells}
+    return {name: value for name, value in told.items() if present[name]}
 
 
-def _joint_lines(seen: dict[str, Any]) -> Iterator[str]:
-    for label, joint in seen.get("joints", {}).items():
-        told = "limp" if joint["commanded_deg"] is None else f"told {joint['commanded_deg']:.2f} deg"
-        yield f"  {label:<11} {joint['deg']:.2f} deg, {told}, {joint['ma'] / 1000:.2f} A"
-    if seen.get("object_deg") is not None:
-        yield f"  object      {seen['object_deg']:.2f} deg"
+def _felt_lines(felt: dict[str, Any], unit: str) -> Iterator[str]:
+    for label, joint in felt.get("joints", {}).items():
+        commanded = joint[f"commanded_{unit}"]
+        told = "limp" if commanded is None else f"told {commanded:.2f} {unit}"
+        yield f"  {label:<11} {joint[unit]:.2f} {unit}, {told}, {joint['ma'] / 1000:.2f} A"
+    if felt.get("object_deg") is not None:
+        yield f"  object      {felt['object_deg']:.2f} deg"
+    if felt.get("load_n") is not None:
+        yield f"  force       {felt['load_n']:.2f} N"
+    if felt.get("cell_kpa"):
+        yield f"  cells       {', '.join(f'{label} {kpa:.2f}' for label, kpa in felt['cell_kpa'].items())} kPa"
 
 
 def _fields(status: Status, line: dict[str, int | None]) -> dict[str, object]:

@@ -22,7 +22,10 @@ from protocol import variables
 
 FOR_EVER_MS = 1 << 40
 DRAWN_EVERY_MS = 100
-OF = {"*": " One value per coil.", "+": " One value per joint.", "@": " Only where there is a camera."}
+OF = {
+    "*": " One value per coil.", "+": " One value per joint.", "@": " Only where there is a camera.",
+    "!": " Only where there is a load cell.", "#": " One value per force cell.",
+}  # fmt: skip
 WORDS = "var."  # before the name of a variable in protocol/help.txt
 
 Show = Callable[[Record], None]

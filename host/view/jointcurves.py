@@ -28,13 +28,13 @@ def joint_angles(recording: Recording, name: str) -> Numbers:
 
 def has_joints(recording: Recording) -> bool:
     """Return whether the robot told of joints."""
-    return bool(recording.telemetry and recording.telemetry[0].joint_deg)
+    return bool(recording.telemetry and recording.telemetry[0].joint_position)
 
 
 def draw_joints(axes: Axes, recording: Recording) -> None:
     """Draw each joint's angle as measured, and dashed where it is told to go."""
     times = record_times(recording)
-    measured, commanded = joint_angles(recording, "joint_deg"), joint_angles(recording, "commanded_deg")
+    measured, commanded = joint_angles(recording, "joint_position"), joint_angles(recording, "commanded_position")
     for i, label in enumerate(recording.joints):
         axes.plot(times, measured[:, i], color=finger_colour(i), lw=1.1, label=label)
         axes.plot(times, commanded[:, i], color=INK, lw=0.7, ls=(0, (2, 2)))
