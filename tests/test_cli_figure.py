@@ -31,6 +31,8 @@ def no_robot(monkeypatch, tmp_path):
         ("8", "sim:sphere-b?slope=10"),
         ("9", "sim:sphere-b"),
         ("13", "sim:sphere-b"),
+        ("15", "sim:sphere-b"),
+        ("16", "sim:sphere-b"),
         ("nail", "sim:sphere-b?tip=nail&set=servos.dead_band_us:0"),
     ],
 )

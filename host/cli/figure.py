@@ -20,12 +20,14 @@ from host.robot import Robot
 from host.run import Keeper, run
 from host.view import (
     check_pictures,
+    draw_dents,
     draw_film,
     draw_grasp,
     draw_grips,
     draw_jump,
     draw_nail,
     draw_poses,
+    draw_stresses,
     draw_tilting,
 )
 
@@ -47,6 +49,7 @@ class Figure(NamedTuple):
 
 
 FINGERS = "fingers-figure13.gait"
+PRESS = "press-hold-release.gait"
 EXACT = "&set=servos.dead_band_us:0"  # so that the grip is that of the script
 SLOWLY = (
     "time=10s",
@@ -62,6 +65,8 @@ FIGURES = {
     "12": Figure((Run(FINGERS),), draw_grips, "two soft fingers parallel, gripping, and swung to either side"),
     "13": Figure((Run(FINGERS),), draw_grasp, "the energy of their tips and both displacements"),
     "14": Figure((Run("fingers-experiment.gait"),), draw_tilting, "a cube that tilts against the swing of two fingers"),
+    "15": Figure((Run(PRESS),), draw_dents, "a rheological block that is pressed, held and released, by its mesh"),
+    "16": Figure((Run(PRESS),), draw_stresses, "the stress in that block"),
     "nail": Figure(
         (Run(FINGERS, "?tip=nail" + EXACT, SLOWLY), Run(FINGERS, "?tip=radial" + EXACT, SLOWLY)),
         draw_nail,

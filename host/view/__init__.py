@@ -9,6 +9,8 @@ draw_grips(recording, Path("grips.svg"))   # two fingers in their poses
 draw_grasp(recording, Path("grasp.svg"))   # their energy, displacements and angles over time
 draw_nail(nail, radial, Path("nail.svg"))  # what the nail does, from two runs
 draw_tilting(recording, Path("tilt.svg"))  # an object that tilts as they swing
+draw_dents(recording, Path("dents.svg"))   # a block that was pressed, by its mesh
+draw_stresses(recording, Path("s.svg"))    # the stress in it
 """
 
 from __future__ import annotations
@@ -104,6 +106,31 @@ def draw_tilting(recording: Recording, path: Path) -> None:
 
     with style.settings():
         style.save(tilting.tilting_figure(recording), path)
+
+
+def draw_dents(recording: Recording, path: Path) -> None:
+    """Write the picture of the mesh of a block at push, hold, release and long after; BadRequest without fields."""
+    _check_press(recording, path)
+    from host.view import dents, style  # noqa: PLC0415
+
+    with style.settings():
+        style.save(dents.dents_figure(recording), path)
+
+
+def draw_stresses(recording: Recording, path: Path, what: str = "von Mises") -> None:
+    """Write the picture of the stress in that block, `what` "von Mises" or "sigma_y"; BadRequest without fields."""
+    _check_press(recording, path)
+    from host.view import stresses, style  # noqa: PLC0415
+
+    with style.settings():
+        style.save(stresses.stresses_figure(recording, what), path)
+
+
+def _check_press(recording: Recording, path: Path) -> None:
+    """Raise BadRequest when there is no block to draw, or no picture could be written."""
+    _check_seen(recording, path)
+    if "indenter" not in recording.scenes[0]:
+        raise BadRequest("this figure shows a block under a press: run it on a robot that has one, --robot sim:press")
 
 
 def _check_fingers(recording: Recording, path: Path) -> None:

@@ -1,7 +1,8 @@
 """The picture of a run: (a) the body along the ground, (b) its fastest movement, (c) the curves over time.
 
-A body in space is drawn in space; a robot with joints has its own picture (handplot). Without scenes (a real robot, a
-plain log) only the curves are drawn. The film of a run shows more frames and of the curves only the travel.
+A body in space is drawn in space; robots with joints have pictures of their own (handplot, pressplot). Without scenes
+(a real robot, a plain log) only the curves are drawn. The film of a run shows more frames and of the curves only the
+travel.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ from host.view.film import strip_slope
 from host.view.handplot import hand_figure
 from host.view.instants import Numbers, between, fastest, nearby, scene_times
 from host.view.jointcurves import has_joints
+from host.view.presscurves import presses
+from host.view.pressplot import press_figure
 from host.view.sheet import BAR_MM, BOTTOM_MM, GAP_MM, LEFT_MM, NAME_MM, RIGHT_MM, TOP_MM, Sheet, heat_of
 from host.view.style import FAINT, PAGE_MM
 
@@ -35,6 +38,8 @@ def run_figure(recording: Recording) -> Figure:
     """Return the picture; BadRequest when nothing was recorded."""
     if not recording.telemetry:
         raise BadRequest("nothing to draw: the record holds no telemetry")
+    if presses(recording):
+        return press_figure(recording)
     if has_joints(recording):
         return hand_figure(recording)
     rows = len(curves.used(recording))

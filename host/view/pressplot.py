@@ -1,0 +1,114 @@
+"""The picture of a run of a press: (a) block and indenter at a few instants, (b) force, depth and cells over time.
+
+Without scenes (a real robot, a plain log) only the curves are drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon, Rectangle
+
+from host.errors import BadRequest
+from host.recording import Recording, Scene
+from host.view.curves import label_time, record_times
+from host.view.film import Box, frame
+from host.view.instants import Numbers, scene_times
+from host.view.meshes import EDGE_MM, FLESH, draw_ruler, fill_tool, height_of
+from host.view.presscurves import draw_cells, draw_depth, draw_force, draw_joint_current
+from host.view.pressing import press_of
+from host.view.sheet import BOTTOM_MM, GAP_MM, LEFT_MM, NAME_MM, RIGHT_MM, TOP_MM, Sheet
+from host.view.style import FAINT, INK, PAGE_MM, Style
+
+SHOWN, WORDS_MM, LINE_MM, HEAD_MM = 4, 8.5, 3.4, 14.0
+LABEL_MM = 10.0  # from the axis to its name
+CELLS, DARKEST = "magma_r", 0.9  # colours of the cells, from no pressure to the greatest shown
+Panel = tuple[Callable[[Axes, Recording], None], float]  # what draws it, and its height in mm
+FORCE, DEPTH, PRESSURE, CURRENT = (draw_force, 36.0), (draw_depth, 28.0), (draw_cells, 34.0), (draw_joint_current, 20.0)
+
+
+def press_figure(recording: Recording) -> Figure:
+    """Return the picture."""
+    shown = telling(recording) if len(recording.scenes) > 1 else []
+    box = strip_box(recording, shown) if shown else None
+    each = (PAGE_MM - LEFT_MM - RIGHT_MM) / SHOWN
+    strip_mm = height_of(box, each) + WORDS_MM + GAP_MM + NAME_MM if box else 0.0
+    panels: list[Panel] = [FORCE, DEPTH, *[PRESSURE] * bool(recording.cells), CURRENT]
+    curves_mm = NAME_MM + sum(mm + GAP_MM for _, mm in panels) - GAP_MM
+    sheet = Sheet(TOP_MM + strip_mm + curves_mm + BOTTOM_MM, recording.title)
+    if box:
+        sheet.name("a", "block and indenter, to scale; squares: force cells, darker where more presses on them [kPa]")
+        draw_strip(sheet, recording, shown, box)
+    sheet.name("b" if box else "", "what the robot measured" + ", and what was true" * bool(box))
+    draw_curves(sheet, recording, panels, scene_times(recording)[shown])
+    return sheet.figure
+
+
+def telling(recording: Recording) -> list[int]:
+    """Return the scenes that tell a run: push, hold, release and long after, or evenly when there was no such press."""
+    try:
+        return list(press_of(recording))
+    except BadRequest:
+        return [round(i) for i in np.linspace(0, len(recording.scenes) - 1, SHOWN)]
+
+
+def strip_box(recording: Recording, shown: list[int]) -> Box:
+    """Return the room that the block needs in these scenes, with what presses on it."""
+    block = recording.scenes[0]["block"]
+    surface = np.vstack([recording.scenes[i]["surface_mm"] for i in shown])
+    left, right = min(0.0, float(surface[:, 0].min())), max(block["width_mm"], float(surface[:, 0].max()))
+    top = max(block["height_mm"], float(surface[:, 1].max()))
+    return left - EDGE_MM, right + EDGE_MM, -EDGE_MM, top + HEAD_MM
+
+
+def draw_strip(sheet: Sheet, recording: Recording, shown: list[int], box: Box) -> None:
+    """Draw the block side by side at these scenes, with time, force and dent below each."""
+    each, times = (PAGE_MM - LEFT_MM - RIGHT_MM) / SHOWN, scene_times(recording)
+    high = height_of(box, each)
+    pressures = [cell["pressure_kpa"] for i in shown for cell in recording.scenes[i]["cells"].values()]
+    for i, index in enumerate(shown):
+        axes, scene = sheet.axes(LEFT_MM + i * each, each, high), recording.scenes[index]
+        draw_scene(axes, scene, max([1.0, *pressures]))
+        if i == 0:
+            draw_ruler(axes, box)
+        frame(axes, box)
+        style: Style = {"ha": "center", "va": "top", "fontsize": 6.5, "color": INK}
+        middle = LEFT_MM + (i + 0.5) * each
+        sheet.write(middle, high + 0.5, f"{max(0.0, times[index]):.2f} s, {scene['force_n']:.2f} N", **style)
+        words = f"depth {scene['depth_mm']:.2f}, dent {scene['observed']['dent_mm']:.2f} mm"
+        sheet.write(middle, high + 0.5 + LINE_MM, words.replace("-", "\N{MINUS SIGN}"), **style)
+    sheet.y_mm -= high + WORDS_MM + GAP_MM
+
+
+def draw_scene(axes: Axes, scene: Scene, most_kpa: float) -> None:
+    """Draw the block with its surface as it is, its cells where they were put, and what presses on it."""
+    surface, wide = np.array(scene["surface_mm"], dtype=float), scene["block"]["width_mm"]
+    outline = np.vstack([[0.0, 0.0], surface[np.argsort(surface[:, 0], kind="stable")], [wide, 0.0]])
+    axes.add_patch(Polygon(outline, fc=FLESH, ec=INK, lw=0.6, zorder=2))
+    for cell in scene["cells"].values():
+        side, (x, y), pressure = cell["side_mm"], cell["centre_mm"], float(cell["pressure_kpa"])
+        shade = colormaps[CELLS](DARKEST * min(1.0, max(0.0, pressure / most_kpa)))
+        axes.add_patch(Rectangle((x - side / 2, y - side / 2), side, side, fc=shade, ec=INK, lw=0.3, zorder=3))
+        text = f"{pressure:.1f}" if abs(pressure) >= 0.05 else "0"
+        axes.text(x, y - side / 2 - 0.6, text, ha="center", va="top", fontsize=5, color=INK, zorder=4)
+    fill_tool(axes, scene["indenter"]["outline_mm"])
+
+
+def draw_curves(sheet: Sheet, recording: Recording, panels: list[Panel], shown_s: Numbers) -> None:
+    """Draw the curves over one time, with lines at the instants that are shown."""
+    first: Axes | None = None
+    wide = PAGE_MM - LEFT_MM - RIGHT_MM
+    for draw, height_mm in panels:
+        axes = sheet.axes(LEFT_MM, wide, height_mm, first)
+        first = first or axes
+        draw(axes, recording)
+        for t in shown_s:
+            axes.axvline(float(t), color=FAINT, lw=0.6, ls=(0, (4, 2)), zorder=0)
+        axes.yaxis.set_label_coords(-LABEL_MM / wide, 0.5)
+        axes.tick_params(labelbottom=False)
+        sheet.y_mm -= height_mm + GAP_MM
+    label_time(axes, record_times(recording))
