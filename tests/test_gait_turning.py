@@ -213,9 +213,9 @@ def test_a_robot_without_coils_has_a_report_without_coils():
         "script.gait keeps the limits of round\n"
         "  time      2.5 s at least, 2.5 s at most\n"
         "  program   43 of 1024 bytes, 3 steps\n"
-        "  joint orders   angles                  speed (of 100)       held (of 5)\n"
-        "  R          2   -8.0 .. 0.0 deg             30.0 deg/s            1.00 s\n"
-        "  L          1   0.0 .. 0.0 deg              30.0 deg/s            1.50 s"
+        "  joint orders   angles                  speed (of 100)       held (of 5)      driven\n"
+        "  R          2   -8.0 .. 0.0 deg             30.0 deg/s            1.00 s      1.50 s\n"
+        "  L          1   0.0 .. 0.0 deg              30.0 deg/s            1.50 s      1.00 s"
     )
 
 
@@ -227,6 +227,7 @@ def test_the_numbers_for_json_are_those_of_the_parts_that_the_robot_has():
     assert data["held_ms"] == {"most": 505, "limit": 5000}
     assert data["joints"]["R"] == {
         "orders": 2, "least_centi": -800, "most_centi": 0, "fastest_centi_per_s": 3000, "held_ms": 0,
+        "driven_ms": 1500,
     }  # fmt: skip
     assert data["coils"] == {}
     assert not {"at_once", "supply_current_ma", "heat_mj"} & set(data)

@@ -95,12 +95,18 @@ class Builder(Transformer[Token, Any]):
         place = self._place(word)
         return tree.Orient(target, tuple(clauses), place.upto(last.place) if last else place)
 
+    def press(self, items: Items) -> tree.Press:
+        """Return a `press` with its clauses as written."""
+        word, *clauses = items
+        place = self._place(word)
+        return tree.Press(tuple(clauses), place.upto(clauses[-1].place) if clauses else place)
+
     def clause(self, items: Items) -> tree.Clause:
         """Return a word and its value."""
         word, value = items
         return tree.Clause(str(word), value, self._place(word).upto(value.place))
 
-    timeout = motion = course = clause
+    timeout = motion = course = stroke = clause
 
     def otherwise(self, items: Items) -> tree.Otherwise:
         """Return `else NAME`."""
@@ -134,10 +140,10 @@ class Builder(Transformer[Token, Any]):
             self._place(words[0]).upto(value.place),
         )
 
-    def angle(self, items: Items) -> tree.Angle:
-        """Return a condition on how the robot or its object lies."""
+    def reading(self, items: Items) -> tree.Reading:
+        """Return a condition on what there is once on a robot."""
         quantity, compare, value = items
-        return tree.Angle(self._name(quantity), str(compare), value, self._place(quantity).upto(value.place))
+        return tree.Reading(self._name(quantity), str(compare), value, self._place(quantity).upto(value.place))
 
     def facing(self, items: Items) -> tree.Facing:
         """Return a condition on which coil points down."""

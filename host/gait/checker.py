@@ -14,8 +14,9 @@ from math import ceil
 from host.gait.coiltrial import STEP_MS
 from host.gait.compiler import Compiled
 from host.gait.diagnostics import Problems, in_order
-from host.gait.plan import Delay, Fire, Guard, Loop, Move, Op, Wait
-from host.gait.tree import Clause, Condition, Place
+from host.gait.jointunits import UNITS
+from host.gait.plan import Delay, Fire, Guard, Loop, Move, Op, Press, Wait, walk
+from host.gait.tree import Clause, Facing, Order, Place
 from host.gait.trial import TooLong, Trial
 from host.gait.verdict import CoilReport, JointReport, Report
 from host.profile import Profile
@@ -43,6 +44,7 @@ def check(compiled: Compiled) -> Report:
         shortest_ms=trial.now_ms,
         coils=tuple(_coils(profile, trial)),
         joints=tuple(_joints(profile, trial)),
+        force_mn=max((op.target_mn for op in walk(compiled.plan) if isinstance(op, Press)), default=0),
         at_once=trial.heating.at_once_peak,
         current_ma=trial.heating.current_peak_ma,
         program_bytes=len(compiled.code),
@@ -61,8 +63,8 @@ def _coils(profile: Profile, trial: Trial) -> Iterator[CoilReport]:
 
 def _joints(profile: Profile, trial: Trial) -> Iterator[JointReport]:
     for label, joint in zip(profile.joint_labels, trial.joints, strict=True):
-        angles = joint.lowest_centi, joint.highest_centi
-        yield JointReport(label, joint.moves, *angles, joint.fastest_centi_per_s, joint.held_ms)
+        ends = joint.lowest_centi, joint.highest_centi
+        yield JointReport(label, joint.moves, *ends, joint.fastest_centi_per_s, joint.held_ms, joint.driven_ms)
 
 
 def _walk(ops: Iterable[Op], depth: int = 1) -> Iterator[tuple[Op, int]]:
@@ -89,21 +91,47 @@ def _longest_ms(ops: Iterable[Op]) -> int:
 def _check_op(op: Op, depth: int, profile: Profile, problems: Problems) -> None:
     if isinstance(op, Loop) and depth > program.DEPTH_MAX:
         problems.add(op.node.place, "E308", f"repeats are nested {depth} deep, at most {program.DEPTH_MAX}")
-    if isinstance(op, Guard) and op.condition.source == program.TEMPERATURE:
-        assert isinstance(op.node.condition, Condition)
-        _check_trip(op.condition.value, op.node.condition.value.place, profile, problems)
-    if isinstance(op, Move):
-        _check_range(op, profile, problems)
-    if isinstance(op, Fire):
-        _check_fire(op, profile, problems)
+    match op:
+        case Guard() | Wait():
+            _check_condition(op, profile, problems)
+        case Move():
+            _check_range(op, profile, problems)
+        case Press():
+            _check_press(op, profile, problems)
+        case Fire():
+            _check_fire(op, profile, problems)
+
+
+def _check_condition(op: Guard | Wait, profile: Profile, problems: Problems) -> None:
+    """Report a condition that comes too late: the robot trips before it, or the sensor reads no more."""
+    asked, node = op.condition, op.node.condition
+    if isinstance(node, Facing) or asked.compare == program.BELOW:
+        return
+    place = node.value.place
+    if isinstance(op, Guard) and asked.source == program.TEMPERATURE:
+        _check_trip(asked.value, place, profile, problems)
+    if asked.source == program.FORCE and profile.load is not None and asked.value >= profile.load.trip_mn:
+        own = f"the robot's own trip at {profile.load.trip_mn / 1000:g} N"
+        problems.add(place, "E310", f"{asked.value / 1000:g} N is not below {own}")
+    if asked.source == program.PRESSURE and profile.cell is not None and asked.value >= profile.cell.full_pa:
+        most = f"a force cell reads {profile.cell.full_pa / 1000:g} kPa at most"
+        problems.add(place, "E325", f"it is never above {asked.value / 1000:g} kPa: {most}")
 
 
 def _check_range(op: Move, profile: Profile, problems: Problems) -> None:
-    limits, clause = profile.servo, op.node.clause("to")
-    if clause is not None and not limits.least_centi <= op.target_centi <= limits.most_centi:
-        least, most = limits.least_centi / 100, limits.most_centi / 100
-        message = f"{op.target_centi / 100:g} deg is outside {least:g} deg .. {most:g} deg"
-        problems.add(_value(clause), "E317", message)
+    limits, unit = profile.servo, UNITS[profile.unit]
+    if not limits.least_centi <= op.target_centi <= limits.most_centi:
+        ends = f"{unit.written(limits.least_centi)} .. {unit.written(limits.most_centi)}"
+        problems.add(_clause(op, "to"), "E317", f"{unit.written(op.target_centi)} is outside {ends}")
+
+
+def _check_press(op: Press, profile: Profile, problems: Problems) -> None:
+    most_ms = profile.servo.hold_max_ms
+    if profile.load is not None and op.target_mn > profile.load.most_mn:
+        message = f"{op.target_mn / 1000:g} N, at most {profile.load.most_mn / 1000:g} N"
+        problems.add(_clause(op, "to"), "E323", message)
+    if op.time_ms > most_ms:
+        problems.add(_clause(op, "for"), "E324", f"a press of {op.time_ms} ms, at most {most_ms} ms")
 
 
 def _check_fire(op: Fire, profile: Profile, problems: Problems) -> None:
@@ -140,6 +168,12 @@ def _place(op: Op, compiled: Compiled) -> Place:
         step = compiled.step(op.step)
         return step.place if step else Place(compiled.script.main.name, 1, 1, 2)
     return op.node.place
+
+
+def _clause(op: Move | Press, word: str) -> Place:
+    node: Order = op.node
+    clause = node.clause(word)
+    return _value(clause) if clause else node.place
 
 
 def _value(clause: Clause) -> Place:

@@ -8,7 +8,8 @@ from host.gait import tree, units
 from host.gait.scope import Scope
 
 ORDER_MAX_MS = 0xFFFF
-KINDS = {tree.Fire: "fire", tree.Move: "move", tree.Orient: "orient"}
+LONG_MAX_MS = 24 * 3600 * 1000
+KINDS = {tree.Fire: "fire", tree.Move: "move", tree.Orient: "orient", tree.Press: "press"}
 
 
 def once(clauses: Sequence[tree.Clause | tree.Otherwise], scope: Scope) -> None:
@@ -27,14 +28,14 @@ def value(node: tree.Order, word: str, scope: Scope, kind: str, least: int, most
     return None if clause is None else scope.measured(clause.value, kind, least, most)
 
 
-def time_ms(node: tree.Order, word: str, scope: Scope) -> int | None:
+def time_ms(node: tree.Order, word: str, scope: Scope, most_ms: int = ORDER_MAX_MS) -> int | None:
     """Return the time that an order takes."""
-    return value(node, word, scope, units.TIME, 1, ORDER_MAX_MS)
+    return value(node, word, scope, units.TIME, 1, most_ms)
 
 
-def part_ms(node: tree.Order, word: str, scope: Scope) -> int:
+def part_ms(node: tree.Order, word: str, scope: Scope, most_ms: int = ORDER_MAX_MS) -> int:
     """Return the time of a part of an order, or 0 when it has no such part."""
-    return value(node, word, scope, units.TIME, 0, ORDER_MAX_MS) or 0
+    return value(node, word, scope, units.TIME, 0, most_ms) or 0
 
 
 def need(node: tree.Order, scope: Scope, *wanted: tuple[str, str, str, str]) -> None:

@@ -9,12 +9,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from host.gait import aims, motions, orders, tree, units
+from host.gait import aims, cells, motions, orders, tree, units
 from host.gait.declare import check_head, declare_circles, declare_defs, declare_params
 from host.gait.diagnostics import Problems, did_you_mean
 from host.gait.lines import code_part
 from host.gait.plan import Loop, Op, Step, Wait
-from host.gait.scope import CoilSet, Scope, Value
+from host.gait.scope import CellSet, CoilSet, Scope, Value
 from host.gait.script import Script
 from host.gait.timeline import TooLarge, duration_ms, together
 from host.gait.tree import Place, Statement
@@ -26,6 +26,7 @@ SINGLE: dict[type[Statement], Callable[[Any, Scope, int], list[Op]]] = {
     tree.Fire: orders.fire,
     tree.Move: motions.move,
     tree.Orient: motions.orient,
+    tree.Press: motions.press,
     tree.Wait: orders.wait,
     tree.WaitUntil: orders.wait_until,
     tree.Let: aims.let,
@@ -91,7 +92,7 @@ class _Expander:
                 word = "a let" if isinstance(node, tree.Let) else "a wait for a condition"
                 self.problems.add(node.place, "E143", f"{word} cannot stand in a together")
                 return []
-            case tree.Fire() | tree.Move() | tree.Orient() | tree.Wait() | tree.WaitUntil() | tree.Let():
+            case tree.Order() | tree.Wait() | tree.WaitUntil() | tree.Let():
                 return SINGLE[type(node)](node, where.scope, self._step(node.place, where))
             case tree.Repeat():
                 return self._repeat(node, where)
@@ -149,7 +150,7 @@ class _Expander:
         self.called.add(name)
         if define is None:
             if name not in where.scope.unread:
-                help = did_you_mean(name, [*self.defs, "fire", "move", "wait", "repeat"])
+                help = did_you_mean(name, [*self.defs, "fire", "move", "press", "wait", "repeat"])
                 self.problems.add(node.name.place, "E162", f"there is no def `{name}`", help)
             return []
         if name in where.defs:
@@ -168,11 +169,18 @@ class _Expander:
 
     def _argument(self, node: tree.Expression | tree.Coils, scope: Scope) -> Value:
         if isinstance(node, tree.Coils):
-            mask = scope.channels(node.coils)
-            return CoilSet(mask) if mask else None
+            return self._named(node, scope)
         if isinstance(node, tree.Reference):
             return scope.lookup(node)
         return scope.value(node)
+
+    def _named(self, node: tree.Coils, scope: Scope) -> Value:
+        """Return the channels, or the force cells, that an argument names."""
+        if all(cells.is_cell(each, scope) for each in node.coils):
+            mask = cells.masked(node.coils, scope)
+            return CellSet(mask) if mask else None
+        mask = scope.channels(node.coils)
+        return CoilSet(mask) if mask else None
 
     def _step(self, place: Place, where: Where) -> int:
         text = code_part(self._line(place)).strip()

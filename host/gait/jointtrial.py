@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from host.gait.coiltrial import STEP_MS
-from host.gait.plan import Move, Orient
+from host.gait.plan import Move, Orient, Press
 
 
 @dataclass(slots=True)
@@ -15,22 +15,23 @@ class JointTrial:
     least_centi: int
     most_centi: int
     moves: int = 0
-    lowest_centi: int | None = None  # that it was told to go to, or may have been by an orient
+    lowest_centi: int | None = None  # that it was told to go to, or may have been by an orient or a press
     highest_centi: int | None = None
     fastest_centi_per_s: int = 0
     held_ms: int = 0
-    order: Move | Orient | None = None  # None: limp
+    driven_ms: int = 0  # by orders, until they ended or others took their place
+    order: Move | Orient | Press | None = None  # None: limp
     begin_ms: int = 0  # of its order, if every wait is over at once
     begin_most_ms: int = 0  # if every wait runs out
-    low_centi: int = 0  # where it may have been when its move began, or be while it is oriented and after
+    low_centi: int = 0  # where it may have been when its move began, or be while it is oriented or pressed and after
     high_centi: int = 0
 
     def place(self, now_ms: int, most_ms: int) -> tuple[int, int]:
-        """Return the lowest and the highest angle at which it may be told to stand; a limp joint lies anywhere."""
+        """Return the lowest and the highest position at which it may be told to stand; a limp joint lies anywhere."""
         order = self.order
         if order is None:
             return self.least_centi, self.most_centi
-        if isinstance(order, Orient):
+        if isinstance(order, Orient | Press):
             return self.low_centi, self.high_centi
         passed = (now_ms - self.begin_ms, most_ms - self.begin_most_ms)
         shares = [min(passed_ms, order.time_ms) for passed_ms in passed]
@@ -47,8 +48,12 @@ class JointTrial:
         passed_ms = most_ms - self.begin_most_ms - self.order.time_ms
         return passed_ms + STEP_MS if passed_ms > 0 else 0
 
+    def driven(self, most_ms: int) -> int:
+        """Return for how long its order has driven it, at most."""
+        return 0 if self.order is None else min(most_ms - self.begin_most_ms, self.order.time_ms)
+
     def reach(self, low_centi: int, high_centi: int) -> None:
-        """Count these angles among those that it was told."""
+        """Count these positions among those that it was told."""
         lowest, highest = self.lowest_centi, self.highest_centi
         self.lowest_centi = low_centi if lowest is None else min(lowest, low_centi)
         self.highest_centi = high_centi if highest is None else max(highest, high_centi)

@@ -1,12 +1,13 @@
-"""Orders to joints worked out: a move and an orient, in the robot's own integers."""
+"""Orders to joints worked out: a move, an orient and a press, in the robot's own integers."""
 
 from __future__ import annotations
 
 from host.gait import clauses, tree, units
-from host.gait.plan import Delay, Move, Op, Orient
+from host.gait.plan import Delay, Move, Op, Orient, Press
 from host.gait.scope import Scope
 
-ANGLE_MAX_CENTIDEG = 0x7FFF
+CENTI_MAX = 0x7FFF
+FORCE_MAX_MN = 0xFFFF
 
 
 def move(node: tree.Move, scope: Scope, step: int) -> list[Op]:
@@ -14,11 +15,11 @@ def move(node: tree.Move, scope: Scope, step: int) -> list[Op]:
     clauses.once(node.clauses, scope)
     if not node.joints:
         scope.problems.add(node.place, "E190", "which joints?", "name them after `move`")
-    mask = scope.joints(node.joints)
-    target = clauses.value(node, "to", scope, units.ANGLE, -ANGLE_MAX_CENTIDEG, ANGLE_MAX_CENTIDEG)
+    mask, unit = scope.joints(node.joints), scope.unit
+    target = clauses.value(node, "to", scope, unit.kind, -CENTI_MAX, CENTI_MAX)
     time_ms = clauses.time_ms(node, "over", scope)
     overlap_ms = clauses.part_ms(node, "overlap", scope)
-    clauses.need(node, scope, ("to", "E192", "angle", "to 28 deg"), ("over", "E193", "time", "over 2 s"))
+    clauses.need(node, scope, ("to", "E192", unit.quantity, f"to {unit.example}"), ("over", "E193", "time", "over 2 s"))
     if not mask or target is None or time_ms is None or not clauses.fit(node, time_ms, {"overlap": overlap_ms}, scope):
         return []
     return _lasting(Move(mask, target, time_ms, step, node), overlap_ms)
@@ -34,7 +35,7 @@ def orient(node: tree.Orient, scope: Scope, step: int) -> list[Op]:
     if node.target is None:
         scope.problems.add(node.place, "E194", "orient to which angle?", "write `orient 5 deg for 3 s`")
     else:
-        target = scope.measured(node.target, units.ANGLE, -ANGLE_MAX_CENTIDEG, ANGLE_MAX_CENTIDEG)
+        target = scope.measured(node.target, units.ANGLE, -CENTI_MAX, CENTI_MAX)
     time_ms = clauses.time_ms(node, "for", scope)
     overlap_ms = clauses.part_ms(node, "overlap", scope)
     clauses.need(node, scope, ("for", "E195", "time", "for 3 s"))
@@ -43,7 +44,27 @@ def orient(node: tree.Orient, scope: Scope, step: int) -> list[Op]:
     return _lasting(Orient(profile.mask(profile.joint_labels[:2]), target, time_ms, step, node), overlap_ms)
 
 
-def _lasting(order: Move | Orient, overlap_ms: int) -> list[Op]:
+def press(node: tree.Press, scope: Scope, step: int) -> list[Op]:
+    """Return the order, which takes the only joint, and the time until the next statement may start."""
+    clauses.once(node.clauses, scope)
+    profile = scope.profile
+    scope.weighs(node.place)
+    if profile.load is not None and profile.press is None:
+        scope.problems.add(node.place, "E322", f"the robot {profile.robot} regulates no force")
+    force_mn = clauses.value(node, "to", scope, units.FORCE, 0, FORCE_MAX_MN)
+    over_ms = clauses.time_ms(node, "over", scope)
+    time_ms = clauses.time_ms(node, "for", scope, clauses.LONG_MAX_MS)
+    overlap_ms = clauses.part_ms(node, "overlap", scope, clauses.LONG_MAX_MS)
+    clauses.need(node, scope, ("to", "E196", "force", "to 5 N"), ("over", "E197", "time to get there", "over 1 s"))
+    clauses.need(node, scope, ("for", "E198", "time", "for 20 s"))
+    if force_mn is None or over_ms is None or time_ms is None:
+        return []
+    if not clauses.fit(node, time_ms, {"over": over_ms, "overlap": overlap_ms}, scope):
+        return []
+    return _lasting(Press(profile.mask(profile.joint_labels[:1]), force_mn, over_ms, time_ms, step, node), overlap_ms)
+
+
+def _lasting(order: Move | Orient | Press, overlap_ms: int) -> list[Op]:
     """Return the order and the wait for its end, less the time by which the next statement overlaps it."""
     wait_ms = order.time_ms - overlap_ms
     return [order, Delay(wait_ms, order.step)] if wait_ms else [order]

@@ -12,7 +12,6 @@ from host.gait.plan import Delay, Fire, Guard, Op, Wait
 from host.gait.scope import Scope
 from protocol import program
 
-WAIT_MAX_MS = 24 * 3600 * 1000
 CUTOFF_MAX_DECIDEGC = 0x7FFF
 CHOICES = {"abort": program.ABORT, "continue": program.CONTINUE}
 
@@ -41,7 +40,7 @@ def wait(node: tree.Wait, scope: Scope, step: int) -> list[Op]:
     if node.time is None:
         scope.problems.add(node.place, "E140", "wait for how long?", "write `wait 500 ms` or `wait until ...`")
         return []
-    time_ms = scope.measured(node.time, units.TIME, 1, WAIT_MAX_MS)
+    time_ms = scope.measured(node.time, units.TIME, 1, clauses.LONG_MAX_MS)
     return [Delay(time_ms, step)] if time_ms else []
 
 
@@ -64,7 +63,7 @@ def guard(node: tree.Guard, scope: Scope) -> list[Op]:
 def _timeout(node: tree.WaitUntil, scope: Scope) -> int | None:
     for clause in node.clauses:
         if isinstance(clause, tree.Clause):
-            return scope.measured(clause.value, units.TIME, 1, WAIT_MAX_MS)
+            return scope.measured(clause.value, units.TIME, 1, clauses.LONG_MAX_MS)
     scope.problems.add(node.place, "E141", "wait has no timeout", "add `timeout 4 s`")
     return None
 

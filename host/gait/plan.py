@@ -40,7 +40,7 @@ class Fire:
 
 @dataclass(frozen=True, slots=True)
 class Move:
-    """Turn the joints of `mask` to an angle within `time_ms`, and hold them there; does not wait."""
+    """Bring the joints of `mask` to an angle or depth within `time_ms`, and hold them there; does not wait."""
 
     mask: int
     target_centi: int
@@ -58,6 +58,18 @@ class Orient:
     time_ms: int
     step: int
     node: tree.Orient
+
+
+@dataclass(frozen=True, slots=True)
+class Press:
+    """Regulate the force of the press, the joint of `mask`, for `time_ms`, then hold; does not wait."""
+
+    mask: int
+    target_mn: int
+    over_ms: int
+    time_ms: int
+    step: int
+    node: tree.Press
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +119,7 @@ class Loop:
     node: tree.Repeat
 
 
-Order = Fire | Move | Orient
+Order = Fire | Move | Orient | Press
 Op = Order | Aim | Delay | Wait | Guard | Loop
 
 
@@ -151,6 +163,8 @@ def _op(op: Order | Aim | Delay | Wait | Guard) -> bytes:  # noqa: PLR0911  # on
         return bytes(program.move(op.mask, op.target_centi, op.time_ms))
     if isinstance(op, Orient):
         return bytes(program.orient(op.target_centideg, op.time_ms))
+    if isinstance(op, Press):
+        return bytes(program.press(op.target_mn, op.over_ms, op.time_ms))
     if op.kept is not None:
         return bytes(program.aimed(op.kept, op.duty_permille, op.time_ms, op.cutoff_decidegc, op.ramp_ms))
     if op.ramp_ms:

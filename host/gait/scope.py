@@ -11,12 +11,12 @@ from fractions import Fraction
 
 from host.gait import tree, units
 from host.gait.diagnostics import Problems, did_you_mean
+from host.gait.jointunits import UNITS, JointUnit
 from host.gait.tree import Expression, Name, Place, Reference
 from host.gait.units import Quantity, UnitError
 from host.profile import Profile
 
 EVERY = "all"
-MOVE_IT = "move it: `move {} to 8 deg over 2 s`"
 FIRE_IT = "fire it: `fire {} at 60 % for 600 ms`"
 
 
@@ -28,13 +28,21 @@ class CoilSet:
 
 
 @dataclass(frozen=True, slots=True)
+class CellSet:
+    """Some force cells, as a mask in the order of the profile."""
+
+    mask: int
+
+
+@dataclass(frozen=True, slots=True)
 class Chosen:
     """A coil that the robot chooses and keeps in its place number `kept`."""
 
     kept: int
 
 
-Value = Quantity | CoilSet | Chosen | None  # None: wrong, and reported already
+OTHERS = {CellSet: "force cell", Chosen: "coil"}
+Value = Quantity | CoilSet | CellSet | Chosen | None  # None: wrong, and reported already
 
 
 @dataclass
@@ -94,7 +102,8 @@ class Scope:
 
     def coils(self, nodes: Iterable[tree.Coil]) -> int | None:
         """Return the mask of a list of coils; a joint among them is reported."""
-        return self._all_of(nodes, self.profile.coil_labels, "E139", MOVE_IT)
+        help = f"move it: `move {{}} to {self.unit.example} over 2 s`"
+        return self._all_of(nodes, self.profile.coil_labels, "E139", help)
 
     def joints(self, nodes: Iterable[tree.Coil]) -> int | None:
         """Return the mask of a list of joints; a coil among them is reported."""
@@ -117,22 +126,15 @@ class Scope:
     def channel(self, node: tree.Coil) -> int | None:
         """Return the mask of one coil, joint, group or argument."""
         if isinstance(node, Reference):
-            value = self.lookup(node)
-            if isinstance(value, Quantity):
-                self.problems.add(node.place, "E165", f"`${node.name}` is {value}, not a {self.word()}")
-                return None
-            if isinstance(value, Chosen):
-                help = "fire it by itself"
-                self.problems.add(node.place, "E138", f"`${node.name}` is chosen by the robot as it runs", help)
-                return None
-            return None if value is None else value.mask
+            return self._argument(node)
         known = self.groups()
-        if node.text not in known:
+        if node.text in self.profile.cell_labels:
+            self._cell(node, node.text)
+        elif node.text not in known:
             message = f"the robot {self.profile.robot} has no {self.word()} `{node.text}`"
             help = did_you_mean(node.text, known) or f"it has: {' '.join(known)}"
             self.problems.add(node.place, "E131", message, help)
-            return None
-        return known[node.text]
+        return known.get(node.text)
 
     def aimed(self, node: tree.Coil) -> int | None:
         """Return the place of a coil that the robot chooses, or None when this is another coil."""
@@ -150,10 +152,20 @@ class Scope:
             message = f"the robot {self.profile.robot} has no attitude sensor"
             self.problems.add(place, "E313", message)
 
+    def weighs(self, place: Place) -> None:
+        """Report a statement about force, on a robot that does not measure it."""
+        if self.profile.load is None:
+            self.problems.add(place, "E322", f"the robot {self.profile.robot} has no load cell")
+
     def watches(self, place: Place) -> None:
         """Report a statement about the object's angle, on a robot that does not see it."""
         if self.profile.camera is None:
             self.problems.add(place, "E316", f"the robot {self.profile.robot} has no camera")
+
+    @property
+    def unit(self) -> JointUnit:
+        """Return how the robot's joints are spoken of."""
+        return UNITS[self.profile.unit]
 
     def word(self, mask: int = -1) -> str:
         """Return what the channels of `mask`, or all of the robot, are called."""
@@ -201,11 +213,28 @@ class Scope:
 
     def _quantity(self, node: Reference) -> Quantity | None:
         value = self.lookup(node)
-        if isinstance(value, CoilSet | Chosen):
-            what = self.word(value.mask) if isinstance(value, CoilSet) else "coil"
+        if isinstance(value, CoilSet | CellSet | Chosen):
+            what = self.word(value.mask) if isinstance(value, CoilSet) else OTHERS[type(value)]
             self.problems.add(node.place, "E165", f"`${node.name}` is a {what}, not a value")
             return None
         return value
+
+    def _cell(self, node: tree.Coil, name: str) -> None:
+        """Report a force cell that stands where a channel is needed."""
+        message, help = f"{name} is a force cell, not a {self.word()}", f"ask it: `{name}.pressure > 5 kPa`"
+        self.problems.add(node.place, "E199", message, help)
+
+    def _argument(self, node: Reference) -> int | None:
+        """Return the mask of the channels that an argument stands for."""
+        value = self.lookup(node)
+        if isinstance(value, Quantity):
+            self.problems.add(node.place, "E165", f"`${node.name}` is {value}, not a {self.word()}")
+        elif isinstance(value, CellSet):
+            self._cell(node, f"${node.name}")
+        elif isinstance(value, Chosen):
+            help = "fire it by itself"
+            self.problems.add(node.place, "E138", f"`${node.name}` is chosen by the robot as it runs", help)
+        return value.mask if isinstance(value, CoilSet) else None
 
     def _all_of(self, nodes: Iterable[tree.Coil], labels: tuple[str, ...], code: str, help: str) -> int | None:
         """Return the mask of a list whose channels must all be among `labels`; `all` is all of these."""
@@ -229,4 +258,4 @@ class Scope:
             self.problems.add(place, "E122", f"a plain number is needed here, not {quantity}")
         else:
             wanted = " or ".join(units.OF_KIND[kind])
-            self.problems.add(place, "E122", f"a {kind} ({wanted}) is needed here, not {quantity}")
+            self.problems.add(place, "E122", f"{units.called(kind)} ({wanted}) is needed here, not {quantity}")

@@ -21,6 +21,7 @@ FORMS = {
     "fire": "fire COILS at 60 % for 600 ms [until 95 C] [overlap 200 ms] [ramp 100 ms]",
     "move": "move JOINTS to 28 deg over 2 s [overlap 500 ms]",
     "orient": "orient 5 deg for 3 s [overlap 3 s]",
+    "press": "press to 5 N over 1 s for 20 s [overlap 5 s]",
     "repeat": "repeat 3:",
     "together": "together:",
     "wait": "wait 500 ms, or wait until A.temperature > 95 C timeout 4 s else continue",
@@ -30,6 +31,7 @@ BLOCKS = ("def", "repeat", "together")
 CLAUSES = ("at", "for", "until", "overlap", "ramp", "to", "over", "timeout", "else", "is")
 KEYWORDS = (*FORMS, *CLAUSES)
 NAMED = {"NUMBER": "a number", "NAME": "a name", "TEXT": "a text in quotation marks"}
+NAMES = {"NAME", "PRESS"}  # a robot may be called as a statement is
 SIGNS = {
     "EQUAL": "=", "LPAR": "(", "RPAR": ")", "LSQB": "[", "RSQB": "]", "COLON": ":", "COMMA": ",",
     "DOT": ".", "__ANON_0": "..",
@@ -67,6 +69,8 @@ class _Reader:
         self.text = str(token)
         self.ends = self.kind in ("_NL", "$END", "_DEDENT")
         self.accepts = set(error.accepts or error.expected)
+        if self.accepts == NAMES:
+            self.accepts = {"NAME"}
         self.lines, self.name = lines, name
         self.line, self.column = token.line or len(lines), token.column or 1
         if self.kind == "$END":
@@ -106,7 +110,7 @@ class _Reader:
         """A line that begins with a word which is no statement."""
         word = self.first
         if word in KEYWORDS and word not in FORMS:
-            help = "this word belongs to a statement: put it on the line of its `fire`, `move` or `wait`"
+            help = "this word belongs to a statement: put it on the line of its `fire`, `move`, `press` or `wait`"
             return self._word("E107", f"`{word}` does not begin a statement", help)
         if word.isidentifier() and word not in FORMS and self.accepts == {"LPAR"}:
             near = did_you_mean(word, FORMS)

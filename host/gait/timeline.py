@@ -6,13 +6,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from host.gait.diagnostics import Problems
-from host.gait.plan import Delay, Fire, Loop, Move, Op, Order, Orient
+from host.gait.plan import Delay, Fire, Loop, Move, Op, Order, Orient, Press
 
 EVENTS_MAX = 5_000
 CONFLICTS = {
     Fire: "a coil of this order is on already",
     Move: "a joint of this order has another one already",
     Orient: "a joint has another order already, and orient takes both",
+    Press: "the joint has another order already, and press takes it",
 }
 
 

@@ -109,8 +109,8 @@ class Condition:
 
 
 @dataclass(frozen=True, slots=True)
-class Angle:
-    """`roll > 30 deg`, `orientation > 4.9 deg`: how robot or object lies, evaluated on the robot."""
+class Reading:
+    """`roll > 30 deg`, `force > 5 N`: what there is once on a robot, evaluated on the robot."""
 
     quantity: Name
     compare: str
@@ -127,7 +127,7 @@ class Facing:
     place: Place
 
 
-AnyCondition = Condition | Angle | Facing
+AnyCondition = Condition | Reading | Facing
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,7 +218,7 @@ class Fire(Order):
 
 @dataclass(frozen=True, slots=True)
 class Move(Order):
-    """Turn joints to an angle within a time."""
+    """Bring joints to an angle or a depth within a time."""
 
     joints: tuple[Coil, ...]
     clauses: tuple[Clause, ...]
@@ -230,6 +230,14 @@ class Orient(Order):
     """Turn the object that the joints hold to an angle, and keep it there for a time."""
 
     target: Expression | None
+    clauses: tuple[Clause, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Press(Order):
+    """Bring the force of the press to a value within a time, and keep it there for a time."""
+
     clauses: tuple[Clause, ...]
     place: Place
 
@@ -304,6 +312,7 @@ Statement = (
     | Fire
     | Move
     | Orient
+    | Press
     | Repeat
     | Together
     | Wait

@@ -1,7 +1,8 @@
-"""The joints in the worst case of a plan: how far and how fast they are told to turn, how long they are left alone.
+"""The joints in the worst case of a plan: how far and how fast they are told to go, how long they are left alone.
 
 Where a joint stands is known from its last order; while a wait may cut its way short it is anywhere on the part that is
-left. At the start it is taken to be anywhere in its range, after an orient anywhere within the swing of that.
+left. At the start and after a press it is taken to be anywhere in its range, after an orient anywhere within the swing
+of that.
 """
 
 from __future__ import annotations
@@ -11,9 +12,12 @@ from collections.abc import Sequence
 from host.gait.clock import Clock
 from host.gait.diagnostics import Problems
 from host.gait.jointtrial import JointTrial
-from host.gait.plan import Move, Op, Orient
+from host.gait.jointunits import UNITS
+from host.gait.plan import Move, Op, Orient, Press
 from host.gait.tree import Order, Place
 from host.profile import Profile
+
+Sums = list[tuple[int, int]]
 
 
 class Turning:
@@ -22,6 +26,7 @@ class Turning:
     def __init__(self, profile: Profile, problems: Problems, clock: Clock) -> None:
         self._labels = profile.joint_labels
         self._first = len(profile.coil_labels)
+        self._unit = UNITS[profile.unit]
         self._profile, self._problems, self._clock = profile, problems, clock
         self.joints: list[JointTrial] = []
         if self._labels:
@@ -33,7 +38,7 @@ class Turning:
 
     def take(self, op: Op) -> None:
         """Take what is for joints."""
-        if not isinstance(op, Move | Orient):
+        if not isinstance(op, Move | Orient | Press):
             return
         chosen = [joint for joint in range(len(self.joints)) if op.mask >> self._first + joint & 1]
         for joint in chosen:
@@ -42,21 +47,22 @@ class Turning:
             self._orient(op, chosen)
             return
         for joint in chosen:
-            self._move(joint, op)
+            self._one(joint, op)
 
     def state(self) -> tuple[tuple[object, ...], ...]:
         """Return all that the next turn of a loop depends on, as seen from now."""
         return tuple(self._row(joint) for joint in self.joints)
 
-    def sums(self) -> list[int]:
-        """Return how many orders each joint has had so far."""
-        return [joint.moves for joint in self.joints]
+    def sums(self) -> Sums:
+        """Return how many orders each joint has had so far, and how long these drove it."""
+        return [(joint.moves, joint.driven_ms) for joint in self.joints]
 
-    def skip(self, turns: int, turn_ms: int, most_ms: int, sums: list[int]) -> None:
+    def skip(self, turns: int, turn_ms: int, most_ms: int, sums: Sums) -> None:
         """Count `turns` more turns that are copies of the last one; what no turn orders goes on as it was."""
-        for joint, moves in zip(self.joints, sums, strict=True):
+        for joint, (moves, driven_ms) in zip(self.joints, sums, strict=True):
             if joint.moves > moves:
                 joint.moves += turns * (joint.moves - moves)
+                joint.driven_ms += turns * (joint.driven_ms - driven_ms)
                 joint.begin_ms += turns * turn_ms
                 joint.begin_most_ms += turns * most_ms
 
@@ -67,8 +73,9 @@ class Turning:
 
     def finish(self) -> None:
         """Hold to account how long each joint was left alone, up to the end of the program."""
-        for joint in range(len(self.joints)):
+        for joint, trial in enumerate(self.joints):
             self._hold(joint)
+            trial.driven_ms += trial.order.time_ms if trial.order else 0
 
     def _row(self, joint: JointTrial) -> tuple[object, ...]:
         order = joint.order
@@ -79,18 +86,32 @@ class Turning:
         passed_most_ms = min(self._clock.most_ms - joint.begin_most_ms, longest_ms)
         return (id(order), joint.low_centi, joint.high_centi, passed_ms, passed_most_ms)
 
-    def _move(self, joint: int, op: Move) -> None:
+    def _one(self, joint: int, op: Move | Press) -> None:
+        """Begin what drives a joint by itself; a press may drive it anywhere in its range."""
+        trial = self.joints[joint]
+        if isinstance(op, Move):
+            trial.reach(op.target_centi, op.target_centi)
+            self._begin(trial, op, *self._way(joint, op))
+        else:
+            trial.reach(trial.least_centi, trial.most_centi)
+            self._begin(trial, op, trial.least_centi, trial.most_centi)
+
+    def _way(self, joint: int, op: Move) -> tuple[int, int]:
+        """Return between which places a move may begin; one that would be too fast is reported."""
         trial, slew = self.joints[joint], self._profile.servo.slew_centi_per_s
         low, high = self._place(trial)
         way_centi = max(op.target_centi - low, high - op.target_centi)
         speed = -(-way_centi * 1000 // op.time_ms)
         trial.fastest_centi_per_s = max(trial.fastest_centi_per_s, speed)
         if speed > slew:
-            message = f"joint {self._labels[joint]} would turn at {speed / 100:g} deg/s, at most {slew / 100:g} deg/s"
-            help = f"it begins between {low / 100:g} deg and {high / 100:g} deg" if high - low > 1 else ""
-            self._problems.add(_value(op.node, "over"), "E318", message, help)
-        trial.reach(op.target_centi, op.target_centi)
-        self._begin(trial, op, low, high)
+            unit = self._unit
+            message = (
+                f"joint {self._labels[joint]} would {unit.verb} at {unit.speed(speed)}, at most {unit.speed(slew)}"
+            )
+            begins = f"it begins between {unit.written(low)} and {unit.written(high)}" if high - low > 1 else ""
+            pressed = ": a press leaves it anywhere in its range" if isinstance(trial.order, Press) else ""
+            self._problems.add(_value(op.node, "over"), "E318", message, begins + pressed)
+        return low, high
 
     def _orient(self, op: Orient, chosen: Sequence[int]) -> None:
         """Begin an orient, which keeps the grip and swings both joints; a limp one is reported."""
@@ -125,8 +146,9 @@ class Turning:
     def _place(self, trial: JointTrial) -> tuple[int, int]:
         return trial.place(self._clock.now_ms, self._clock.most_ms)
 
-    def _begin(self, trial: JointTrial, op: Move | Orient, low: int, high: int) -> None:
+    def _begin(self, trial: JointTrial, op: Move | Orient | Press, low: int, high: int) -> None:
         """Begin a new order on one joint, in place of the one it may have."""
+        trial.driven_ms += trial.driven(self._clock.most_ms)
         trial.low_centi, trial.high_centi = low, high
         trial.begin_ms, trial.begin_most_ms = self._clock.now_ms, self._clock.most_ms
         trial.order = op

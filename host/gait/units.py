@@ -1,7 +1,7 @@
 """Quantities of the gait language: exact numbers with a kind, and the units they are written in.
 
-Base units are the robot's own integers: ms, permille, 0.1 C, mA, mV, mJ, 0.01 deg. Arithmetic is exact (fractions)
-and is rounded once, when a value becomes an order.
+Base units are the robot's own integers: ms, permille, 0.1 C, mA, mV, mJ, 0.01 deg, 0.01 mm, mN, Pa. Arithmetic is exact
+(fractions) and is rounded once, when a value becomes an order.
 """
 
 from __future__ import annotations
@@ -28,6 +28,9 @@ CURRENT = "current"
 VOLTAGE = "voltage"
 ENERGY = "energy"
 ANGLE = "angle"
+LENGTH = "length"
+FORCE = "force"
+PRESSURE = "pressure"
 
 UNITS = {
     "ms": Unit(TIME, 1),
@@ -38,6 +41,11 @@ UNITS = {
     "mV": Unit(VOLTAGE, 1),
     "mJ": Unit(ENERGY, 1),
     "deg": Unit(ANGLE, 100),
+    "mm": Unit(LENGTH, 100),
+    "N": Unit(FORCE, 1000),
+    "mN": Unit(FORCE, 1),
+    "kPa": Unit(PRESSURE, 1000),
+    "Pa": Unit(PRESSURE, 1),
 }
 OF_KIND = {
     kind: [name for name, unit in UNITS.items() if unit.kind == kind] for kind in {u.kind for u in UNITS.values()}
@@ -48,6 +56,9 @@ ALIASES = {
     "msec": "ms", "millis": "ms", "milliseconds": "ms", "min": "s", "us": "ms", "degC": "C", "c": "C",
     "celsius": "C", "K": "C", "F": "C", "A": "mA", "ma": "mA", "V": "mV", "mv": "mV", "S": "s", "MS": "ms", "Ms": "ms",
     "degree": "deg", "degrees": "deg", "rad": "deg", "J": "mJ", "mj": "mJ",
+    "millimetre": "mm", "millimetres": "mm", "millimeter": "mm", "millimeters": "mm", "um": "mm", "cm": "mm", "m": "mm",
+    "n": "N", "newton": "N", "newtons": "N", "kN": "N", "mn": "mN",
+    "kpa": "kPa", "pa": "Pa", "MPa": "kPa", "hPa": "kPa", "mbar": "kPa", "bar": "kPa",
 }  # fmt: skip
 
 
@@ -87,20 +98,25 @@ class Quantity:
 
     def _sum(self, other: Quantity, operator: str) -> Quantity:
         if self.kind != other.kind:
-            raise UnitError("E123", f"a {self.kind} `{operator}` a {other.kind} makes no sense")
+            raise UnitError("E123", f"{called(self.kind)} `{operator}` {called(other.kind)} makes no sense")
         return _bounded(Quantity(self.value + other.value, self.kind))
 
     def _times(self, other: Quantity) -> Quantity:
         if NUMBER not in (self.kind, other.kind):
-            raise UnitError("E123", f"a {self.kind} times a {other.kind} makes no sense")
+            raise UnitError("E123", f"{called(self.kind)} times {called(other.kind)} makes no sense")
         return Quantity(self.value * other.value, other.kind if self.kind == NUMBER else self.kind)
 
     def _over(self, other: Quantity) -> Quantity:
         if other.value == 0:
             raise UnitError("E124", "division by zero")
         if other.kind not in (NUMBER, self.kind):
-            raise UnitError("E123", f"a {self.kind} over a {other.kind} makes no sense")
+            raise UnitError("E123", f"{called(self.kind)} over {called(other.kind)} makes no sense")
         return Quantity(self.value / other.value, NUMBER if self.kind == other.kind else self.kind)
+
+
+def called(kind: str) -> str:
+    """Return the kind with its article."""
+    return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
 
 
 def decimal(value: Fraction) -> str:

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 
 from host.gait.diagnostics import Diagnostic, exit_code
+from host.gait.jointunits import UNITS
 from host.profile import Profile
 
 
@@ -22,7 +23,7 @@ class CoilReport:
 
 @dataclass(frozen=True, slots=True)
 class JointReport:
-    """The most that one joint can come to; the angles are None when it is never moved."""
+    """The most that one joint can come to; the positions are None when it is never moved."""
 
     label: str
     orders: int
@@ -30,13 +31,7 @@ class JointReport:
     most_centi: int | None
     fastest_centi_per_s: int
     held_ms: int
-
-    @property
-    def angles(self) -> str:
-        """Return the range of the angles that it is told."""
-        if self.least_centi is None or self.most_centi is None:
-            return ""
-        return f"{self.least_centi / 100:.1f} .. {self.most_centi / 100:.1f} deg"
+    driven_ms: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +44,7 @@ class Report:
     shortest_ms: int
     coils: tuple[CoilReport, ...]
     joints: tuple[JointReport, ...]
+    force_mn: int  # the greatest that is asked for
     at_once: int
     current_ma: int
     program_bytes: int
@@ -77,6 +73,7 @@ class Report:
             "shortest_ms": self.shortest_ms,
             **(self._coil_fields() if self.coils else {}),
             **(self._joint_fields() if self.joints else {}),
+            **(self._force_fields() if self.profile.press else {}),
             "program_bytes": {"most": self.program_bytes, "limit": self.profile.program.bytes_max},
             "depth": self.depth,
             "guards": self.guards,
@@ -96,6 +93,8 @@ class Report:
             yield f"  at once   {self.at_once} of {supply.at_once_max} coils"
             yield f"  supply    {self.current_ma} of {supply.current_max_ma} mA"
         yield f"  program   {self.program_bytes} of {self.profile.program.bytes_max} bytes, {self.steps} steps"
+        if self.force_mn and self.profile.load:
+            yield f"  force     {self.force_mn / 1000:g} of {self.profile.load.most_mn / 1000:g} N"
         yield from self._coil_lines()
         yield from self._joint_lines()
 
@@ -116,6 +115,10 @@ class Report:
             "held_ms": {"most": held_ms, "limit": limits.hold_max_ms},
         }
 
+    def _force_fields(self) -> dict[str, object]:
+        assert self.profile.load is not None
+        return {"force_mn": {"most": self.force_mn, "limit": self.profile.load.most_mn}}
+
     def _coil_lines(self) -> Iterator[str]:
         if self.coils and (not self.joints or any(coil.orders for coil in self.coils)):
             yield f"  coil  orders   on time    energy   heat (of {self.profile.coil.heat_budget_mj} mJ)"
@@ -127,13 +130,16 @@ class Report:
     def _joint_lines(self) -> Iterator[str]:
         if not any(joint.orders for joint in self.joints):
             return
-        limits = self.profile.servo
+        limits, unit = self.profile.servo, UNITS[self.profile.unit]
         speed, hold = f"speed (of {limits.slew_centi_per_s / 100:g})", f"held (of {limits.hold_max_ms / 1000:g})"
-        yield f"  joint orders   {'angles':<20}{speed:>18}{hold:>18}"
+        yield f"  joint orders   {unit.quantity + 's':<20}{speed:>18}{hold:>18}{'driven':>12}"
         for joint in self.joints:
-            figures = f"{joint.fastest_centi_per_s / 100:12.1f} deg/s{joint.held_ms / 1000:16.2f} s"
-            if joint.orders:
-                yield f"  {joint.label:<6}{joint.orders:6d}   {joint.angles:<20}{figures}"
+            if joint.least_centi is None or joint.most_centi is None:
+                continue
+            speed = f"{joint.fastest_centi_per_s / 100:.1f} {unit.name}/s"
+            times = f"{joint.held_ms / 1000:16.2f} s{joint.driven_ms / 1000:10.2f} s"
+            way = unit.way(joint.least_centi, joint.most_centi)
+            yield f"  {joint.label:<6}{joint.orders:6d}   {way:<20}{speed:>18}{times}"
 
 
 def _fields(row: CoilReport | JointReport) -> dict[str, object]:
