@@ -12,6 +12,8 @@ from protocol import codes
 from protocol.variables import UNKNOWN_ANGLE
 
 LIMP = UNKNOWN_ANGLE
+FINE = 16  # parts of a hundredth, in which pulses follow a line: whole ones would jerk what is pressed
+NONE_TOLD = 1 << 29
 LONG_MS = 29_000  # a longer way is reckoned in coarser time: 36000 hundredths times more would be beyond 2**30
 
 
@@ -29,7 +31,8 @@ class Joints:
         self.current_ma = array("H", [0] * count)
         self._servos = servos
         self._limits = limits
-        self._written = array("h", [LIMP] * count)
+        self._fine = array("b", [0] * count)  # beyond what is commanded, in parts of a hundredth
+        self._written = array("i", [NONE_TOLD] * count)
         self._start_centi = array("h", [0] * count)
         self._target_centi = array("h", [0] * count)
         self._begin_ms = array("i", [0] * count)
@@ -43,12 +46,13 @@ class Joints:
             if mask >> self.first + joint & 1:
                 self._begin(joint, target_centi, over_ms, hold_ms, now_ms)
 
-    def steer(self, joint: int, centi: int, end_ms: int) -> None:
-        """Have a joint that is driven stand at an angle from now on, until that time; the caller keeps it in range."""
+    def steer(self, joint: int, centi: int, end_ms: int, fine: int = 0) -> None:
+        """Have a joint that is driven stand at a position from now on, until then; the caller keeps it in range."""
         self._start_centi[joint] = self._target_centi[joint] = centi
         self._over_ms[joint] = 0
         self._end_ms[joint] = end_ms
         self.commanded_centi[joint] = centi
+        self._fine[joint] = fine
 
     def stand(self) -> None:
         """Have every joint that is driven stand where it is told to be now, up to the end of its order."""
@@ -77,13 +81,14 @@ class Joints:
     def write(self) -> None:
         """Bring the servos' pulses in line with the orders; a joint that is limp has none."""
         for joint in range(self.count):
-            centi = self.commanded_centi[joint]
-            if centi != self._written[joint]:
-                self._written[joint] = centi
-                if centi == LIMP:
+            centi, fine = self.commanded_centi[joint], self._fine[joint]
+            told = NONE_TOLD if centi == LIMP else centi * FINE + fine
+            if told != self._written[joint]:
+                self._written[joint] = told
+                if told == NONE_TOLD:
                     self._servos[joint].off()
                 else:
-                    self._servos[joint].pulse(self._limits.width_ns(centi))
+                    self._servos[joint].pulse(self._limits.width_ns(centi, fine))
 
     def pushing(self, joint: int) -> bool:
         """Return whether a joint is driven and not on its way back to a smaller position."""
@@ -135,6 +140,7 @@ class Joints:
         self._over_ms[joint] = over_ms
         self._end_ms[joint] = now_ms + over_ms + hold_ms
         self.commanded_centi[joint] = start_centi
+        self._fine[joint] = 0
         self.on_mask |= 1 << self.first + joint
 
     def _follow(self, joint: int, now_ms: int) -> None:
@@ -143,9 +149,13 @@ class Joints:
             self.on_mask &= ~(1 << self.first + joint)
             return
         passed_ms, over_ms = now_ms - self._begin_ms[joint], self._over_ms[joint]
-        start_centi, target_centi = self._start_centi[joint], self._target_centi[joint]
+        start_centi, centi = self._start_centi[joint], self._target_centi[joint]
         if passed_ms < over_ms:
             while over_ms > LONG_MS:
                 passed_ms, over_ms = passed_ms >> 1, over_ms >> 1
-            target_centi = start_centi + (target_centi - start_centi) * passed_ms // over_ms
-        self.commanded_centi[joint] = target_centi
+            way = (centi - start_centi) * passed_ms
+            centi = start_centi + way // over_ms
+            self._fine[joint] = way % over_ms * FINE // over_ms
+        elif over_ms:
+            self._fine[joint] = 0
+        self.commanded_centi[joint] = centi

@@ -1,14 +1,16 @@
 """The closed loop of a press: the axis goes as fast as the force is off, plus what has proved needed to keep it.
 
-The wanted force follows a straight line to its target and stays there. With the error e the axis goes at
-gain (e + reset x integral of e); the integral is there because a block that creeps takes a speed to bear a constant
-force, and it counts only while something is touched. The axis keeps to its slew limit and its range; where there is
-nothing to press on it stands at the end of its range.
+The wanted force follows a straight line to its target and stays there. With the error e the axis goes at the speed
+gain (e + reset x integral of e), smoothed: what is pressed answers a jerk like a dashpot, at once. The integral is
+there because a block that creeps takes a speed to bear a constant force, and counts only while something is touched;
+before, the axis approaches slowly. It keeps to its slew limit and its range; where there is nothing to press on it
+stands at the end of its range.
 
 Integers below 2**30: the position is kept in nanometres, the speed in micrometres a second.
 """
 
 from firmware.channels import Refused
+from firmware.joints import FINE
 from protocol import codes
 
 NM_PER_CENTI = 10_000
@@ -29,10 +31,10 @@ class Press:
         self._limits = limits
         self._servo = servo
         self._most_mn = most_mn
-        self._rate_um_per_s = min(servo.slew_centi_per_s * 10, RATE_MAX_UM_PER_S)
+        self._most_um_per_s = min(servo.slew_centi_per_s * 10, RATE_MAX_UM_PER_S)
         self._start_mn = self._target_mn = 0
         self._over_ms = 0
-        self._drift_nm_per_s = 0
+        self._rate_um_per_s = self._drift_nm_per_s = 0
         self._nm = 0
         self._begin_ms = self._seen_ms = self._until_ms = self._end_ms = 0
 
@@ -50,7 +52,7 @@ class Press:
         self._start_mn = min(max(self._load.force_mn, 0), self._most_mn)
         self._target_mn = target_mn
         self._over_ms = over_ms
-        self._drift_nm_per_s = 0
+        self._rate_um_per_s = self._drift_nm_per_s = 0
         self._nm = joints.commanded_centi[0] * NM_PER_CENTI
         self._begin_ms = self._seen_ms = now_ms
         self._until_ms = now_ms + time_ms
@@ -74,9 +76,11 @@ class Press:
         passed_ms = min(max(now_ms - self._seen_ms, 0), PASSED_MAX_MS)
         self._seen_ms = now_ms
         servo, rate = self._servo, self._rate(self._wanted_mn(now_ms), passed_ms)
+        self._rate_um_per_s += (rate - self._rate_um_per_s) * passed_ms // self._limits.smooth_ms
         least, most = servo.least_centi * NM_PER_CENTI, servo.most_centi * NM_PER_CENTI
-        self._nm = max(least, min(most, self._nm + rate * passed_ms))
-        self._joints.steer(0, self._nm // NM_PER_CENTI, self._end_ms)
+        self._nm = max(least, min(most, self._nm + self._rate_um_per_s * passed_ms))
+        centi = self._nm // NM_PER_CENTI
+        self._joints.steer(0, centi, self._end_ms, (self._nm - centi * NM_PER_CENTI) * FINE // NM_PER_CENTI)
 
     def _wanted_mn(self, now_ms: int) -> int:
         passed_ms, over_ms = now_ms - self._begin_ms, self._over_ms
@@ -88,14 +92,14 @@ class Press:
 
     def _rate(self, wanted_mn: int, passed_ms: int) -> int:
         """Return how fast the axis is to go down [um/s]."""
-        limits, most = self._limits, self._rate_um_per_s
+        limits, most = self._limits, self._most_um_per_s
         force_mn = self._load.force_mn
         error_mn = max(-ERROR_MAX_MN, min(ERROR_MAX_MN, wanted_mn - force_mn))
         rate = error_mn * limits.gain_um_per_s_per_n // 1000
-        rate = max(-most, min(most, rate))
-        if abs(force_mn) > limits.touch_mn:
-            drift = self._drift_nm_per_s + rate * limits.reset_permille_per_s // 1000 * passed_ms
-            self._drift_nm_per_s = max(-most * 1000, min(most * 1000, drift))
-        else:
+        if abs(force_mn) <= limits.touch_mn:
             self._drift_nm_per_s = 0
+            return max(-most, min(most, limits.approach_um_per_s, rate))
+        rate = max(-most, min(most, rate))
+        drift = self._drift_nm_per_s + rate * limits.reset_permille_per_s // 1000 * passed_ms
+        self._drift_nm_per_s = max(-most * 1000, min(most * 1000, drift))
         return max(-most, min(most, rate + self._drift_nm_per_s // 1000))

@@ -20,6 +20,7 @@ PRESSURE_MAX_PA = 32_767  # a condition compares no more
 CELLS_MAX = 14
 PRESS_GAIN_MAX = 10_000  # um/s for a newton: beyond it the loop's integers would not stay small
 RESET_MAX = 20_000
+SMOOTH_MIN_MS = 20  # no less than a late control step
 WAY_MIN_COUNTS = 1000  # of a potentiometer: less would make angles of its noise
 # What stands for the coil of a robot that has none: no order reaches it.
 NO_COIL = {
@@ -138,13 +139,17 @@ class ServoLimits:
         self._span_centi = data["span_centi"]
         self._check(data)
 
-    def width_ns(self, centi: int) -> int:
-        """Return the width of the pulse that sends a servo to an angle; its span lies half on either side of 0."""
+    def width_ns(self, centi: int, fine: int = 0) -> int:
+        """Return the width of the pulse that sends a servo to a position and so many sixteenths of a hundredth beyond.
+
+        Its span lies half on either side of 0.
+        """
         from_low = centi + self._span_centi // 2
-        return self._low_ns + from_low * self._width_us * 10 // (self._span_centi // 100)
+        beyond_ns = fine * self._width_us * 125 // (2 * self._span_centi)
+        return self._low_ns + from_low * self._width_us * 10 // (self._span_centi // 100) + beyond_ns
 
     def position_centi(self, counts: int) -> int:
-        """Return the angle at which the potentiometer reads so many counts."""
+        """Return the position at which the potentiometer reads so many counts."""
         way = self.high_counts - self.low_counts
         return (counts - self.low_counts) * self._span_centi // way - self._span_centi // 2
 
@@ -211,9 +216,13 @@ class PressLimits:
     def __init__(self, data: dict) -> None:
         self.gain_um_per_s_per_n = data["gain_um_per_s_per_n"]
         self.reset_permille_per_s = data["reset_permille_per_s"]
+        self.smooth_ms = data["smooth_ms"]
+        self.approach_um_per_s = data["approach_um_per_s"]
         self.touch_mn = data["touch_mn"]
         if not 0 < self.gain_um_per_s_per_n <= PRESS_GAIN_MAX or not 0 <= self.reset_permille_per_s <= RESET_MAX:
             raise ValueError(f"press: a gain of 1 to {PRESS_GAIN_MAX} and a reset of 0 to {RESET_MAX}")
+        if not SMOOTH_MIN_MS <= self.smooth_ms <= 1000 or self.approach_um_per_s <= 0:
+            raise ValueError(f"press: smoothed over {SMOOTH_MIN_MS} to 1000 ms, and it approaches at some speed")
 
 
 class Supply:
