@@ -16,10 +16,13 @@ from hil_sim.faults.file import load as load_faults
 from hil_sim.faults.file import plan
 from hil_sim.faults.happening import schedule
 from hil_sim.joints import position_input
+from hil_sim.loadcells import cell_input, load_input
+from hil_sim.meshfile import MeshFileError
+from hil_sim.physics.block.material import BlockError
 from hil_sim.physics.hand.fingertip import HandError
 from hil_sim.robots.check import near
 from hil_sim.robots.file import PROFILES, RobotFile, RobotFileError, load
-from hil_sim.robots.keys import FINGERS, RING
+from hil_sim.robots.keys import COILS, FINGERS, KINDS, PRESS, RING
 from hil_sim.soundness import CameApart
 from hil_sim.supply import Battery
 from hil_sim.worlds import cpython, micropython, preset
@@ -52,8 +55,10 @@ def assemble(address: Address, clock: Clock | None = None, can_wire: CanWire | N
     try:
         plant = plant_of(robot, address.seed, address.body)
         bench = Bench(parts_of(robot), plant, image, execute, **wired)
-    except (ArithmeticError, CameApart, HandError) as error:
+    except (ArithmeticError, CameApart, HandError, BlockError) as error:
         raise RobotFileError(f"{robot.name} cannot be built from these numbers: {error}") from error
+    except MeshFileError as error:
+        raise RobotFileError(f"the mesh of {robot.name}, {error}") from error
     if address.node:
         for path, data in preset.number(image, address.node).items():
             bench.board.flash.store(path, data)
@@ -67,12 +72,16 @@ def assemble(address: Address, clock: Clock | None = None, can_wire: CanWire | N
 
 def plant_of(robot: RobotFile, seed: int, body: str = BODIES[0]) -> Plant:
     """Return the body of a robot; the seed makes its terrain. A "still" one keeps the shape in which it rests."""
+    if body != BODIES[0] and COILS not in KINDS[robot.kind]:
+        raise RobotFileError(f"body={body}: {robot.name} has no coils to heat while it does not move")
     if robot.kind == FINGERS:
-        if body != BODIES[0]:
-            raise RobotFileError(f"body={body}: {robot.name} has no coils to heat while it does not move")
         from hil_sim.bodies.fingers import FingersPlant  # noqa: PLC0415  (compiled physics that others do without)
 
         return FingersPlant(robot)
+    if robot.kind == PRESS:
+        from hil_sim.bodies.press import PressPlant  # noqa: PLC0415  (likewise)
+
+        return PressPlant(robot)
     plant = RingPlant(robot, seed) if robot.kind == RING else SpherePlant(robot, seed)
     return plant if body == BODIES[0] else still(plant)
 
@@ -104,15 +113,20 @@ def _key_file(path: str) -> bytes:
 
 
 def _agree(robot: RobotFile, profile: bytes) -> None:
-    """Raise RobotFileError unless the firmware's profile names the same coils and servos in the same places."""
+    """Raise RobotFileError unless the firmware's profile names the same coils, servos and cells in the same places."""
     try:
-        rows = [(row["label"], _place(row)) for row in json.loads(profile)["channels"]]
+        told = json.loads(profile)
+        rows = [(row["label"], _place(row)) for row in told["channels"]]
+        rows += [(row["label"], (row["input"],)) for row in told.get("cells", ())]
+        rows += [("load", (told["load"]["input"],))] if "load" in told else []
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         raise RobotFileError(f"{robot.profile}: no profile of a robot ({error!r})") from None
     wiring = robot.wiring
     wired: list[tuple[str, tuple[Any, ...]]] = [(label, wiring.outputs[label]) for label in robot.labels]
     count = len(robot.joints)
     wired += [(label, (wiring.pins[label], i, position_input(i, count))) for i, label in enumerate(robot.joints)]
+    wired += [(label, (cell_input(i, count),)) for i, label in enumerate(robot.cells)]
+    wired += [("load", (load_input(len(robot.cells), count),))] if robot.load_cell and "load" in told else []
     if rows != wired:
         odd = [label for label, _ in dict.fromkeys([row for row in [*wired, *rows] if (row in wired) != (row in rows)])]
         which = " ".join(dict.fromkeys(odd)) or "their order"
@@ -141,4 +155,6 @@ def parts_of(robot: RobotFile) -> Parts:
         servos=[wiring.pins[label] for label in robot.joints],
         servo_dead_band_us=wiring.dead_band_us,
         camera=robot.camera,
+        load_cell=robot.load_cell,
+        force_cells=robot.force_cells,
     )

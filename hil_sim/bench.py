@@ -29,6 +29,7 @@ from hil_sim.devices.ntc import Ntc
 from hil_sim.devices.servo import DEAD_BAND_US
 from hil_sim.joints import Jointed, Joints
 from hil_sim.journal import Journal
+from hil_sim.loadcells import ForceCells, LoadCell, Loaded, connect
 from hil_sim.record import CoilRecord, JointRecord
 from hil_sim.soundness import EVERY_US, Soundness
 from hil_sim.supply import Battery, Supply
@@ -89,6 +90,8 @@ class Parts:
     servos: Sequence[int] = ()  # the processor's pin of each joint
     servo_dead_band_us: float = DEAD_BAND_US
     camera: Optics | None = None  # looks at the object, if the plant has one
+    load_cell: LoadCell | None = None  # if the plant is pressed with a force
+    force_cells: ForceCells | None = None  # inside the plant
 
 
 class Bench:
@@ -126,6 +129,8 @@ class Bench:
         self.board.changed = self._gates_changed
         self.coils = [CoilRecord(label) for label in plant.labels]
         self._joints = Joints(plant, self.board, parts.servos) if isinstance(plant, Jointed) else None
+        if isinstance(plant, Loaded) and parts.load_cell and parts.force_cells:
+            connect(plant, self.board, len(parts.servos), parts.load_cell, parts.force_cells)
         self.world = World(self.board, image, execute, ticks_start_us)
         self._by_label = {coil.label: coil for coil in self.coils}
         self._began_us = self._advanced_us = self.clock.now_us

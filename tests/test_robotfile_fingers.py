@@ -83,7 +83,8 @@ def test_an_address_chooses_the_models_of_the_physics():
     hand = load(address.robot, address.overrides).fingers
 
     assert (hand.tip, hand.contact, hand.motion, hand.mu, hand.g) == ("radial", "stick", "quasi-static", 0.2, 0.0)
-    assert tuple(CHOICES.values()) == (TIPS, CONTACTS, MOTIONS)
+    ours = [words for name, words in CHOICES.items() if name.startswith("fingers.")]
+    assert ours == [TIPS, CONTACTS, MOTIONS]
 
 
 @pytest.mark.parametrize(

@@ -20,6 +20,10 @@ NEEDS = (  # a choice, the words of it that need one of some numbers, and why
     ("fingers.motion", ("dynamic",), ("object.mass_g",), "what has no mass is moved by no dynamics"),
     ("fingers.motion", ("dynamic",), ("object.width_mm", "object.height_mm"), "without extent it has no inertia"),
 )
+PAIRS = (
+    ("material.youngs_modulus_kpa", "material.viscosity_kpa_s"),
+    ("material.youngs_modulus_2_kpa", "material.viscosity_2_kpa_s"),
+)  # springs with the dashpots in series
 ALSO = {"ground.friction_ratio": "object.friction_ratio"}  # by which name a robot without ground has the same
 FROM_ADDRESS = "set by the robot's address"
 
@@ -48,20 +52,22 @@ class Check:
         self._meant: set[str] = set()  # keys that the file tried to give
         sections = {"": {key: value for key, value in data.items() if not isinstance(value, dict)}}
         sections |= {key: value for key, value in data.items() if isinstance(value, dict)}
-        power = BATTERY if "battery" in sections else BENCH
         self.kind = kind_of(sections)
-        self.rows = keys_of(self.kind, power)
-        self._texts = texts_of(features_of(self.kind, power))
+        power, meshed = BATTERY if "battery" in sections else BENCH, "mesh" in sections.get("press", {})
+        features = features_of(self.kind, power, meshed)
+        self.rows = keys_of(features)
+        self._texts = texts_of(features)
         self._all: list[Key | Text] = [*self.rows, *self._texts]
         self.choices = {text.name: given(sections, text.name) for text in self._texts if text.name in CHOICES}
         self._sections(sections)
         self._missing()
-        for name, what in mistakes_in(sections, features_of(self.kind, power)):
+        for name, what in mistakes_in(sections, features):
             self._say(name, what)
         for name, value in overrides.items():
             self._override(name, value)
         self._ranges()
         self._constraints(overrides)
+        self._pairs()
 
     def _say(self, name: str, what: str) -> None:
         """Note a mistake at the line of section.key, else of its section, else of the file."""
@@ -126,7 +132,7 @@ class Check:
 
     def _missing(self) -> None:
         for key in self.rows:
-            if key.name not in self._meant:
+            if key.needed and key.name not in self._meant:
                 row = f'{key.key} = [value, "standing: source"]'
                 self._say(key.section, f"[{key.section}] lacks {key.key}: add {row}")
 
@@ -175,6 +181,16 @@ class Check:
             else:
                 self._say(name, f"{key} {choice} {what}")
 
+    def _pairs(self) -> None:
+        """Note a spring without the dashpot that is in series with it, and the other way round."""
+        for pair in PAIRS:
+            none, other = sorted(pair, key=self._value)
+            if self._value(none) == 0.0 < self._value(other):
+                self._say(other, f"{other} is {self._value(other):g} and {none} 0: a branch has both, or neither")
+
+    def _value(self, name: str) -> float:
+        return self.entries[name].value if name in self.entries else 0.0
+
     def _wrong(self, entry: Entry, allowed: str) -> None:
         """Note that a number is none that a robot may have, in the file or from the address."""
         what = f"{entry.name} is {entry.value:g}, it must be {allowed}"
@@ -190,7 +206,7 @@ def kind_of(sections: Sections) -> str:
         if (kind := given(sections, name)) in KINDS:
             return kind
     found = {f"{section}.{key}" for section, table in sections.items() for key in table}
-    return max(KINDS, key=lambda kind: len(found & {key.name for key in keys_of(kind, BENCH)}))
+    return max(KINDS, key=lambda kind: len(found & {key.name for key in keys_of(features_of(kind))}))
 
 
 def given(sections: Sections, name: str) -> str:

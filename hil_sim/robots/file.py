@@ -14,13 +14,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from hil_sim.bodies.pressnumbers import PressNumbers
 from hil_sim.devices.anglecamera import Optics
+from hil_sim.loadcells import ForceCells, LoadCell
 from hil_sim.physics.battery import BatteryNumbers
 from hil_sim.physics.bodies import Attitude, GroundNumbers, RingNumbers, SphereNumbers, StartNumbers
 from hil_sim.physics.coilset import CoilNumbers
 from hil_sim.physics.hand.numbers import HandNumbers
 from hil_sim.robots.check import Check, Entry, near
-from hil_sim.robots.keys import FINGERS, RING, SPHERE
+from hil_sim.robots.keys import COILS, FINGERS, KINDS, PRESS, RING, SHELL, SPHERE
+from hil_sim.robots.pressfile import press_numbers
 
 FOLDER = Path(__file__).parent
 PROFILES = Path(__file__).parents[2] / "firmware" / "robots"
@@ -70,14 +73,18 @@ class RobotFile:
     name: str
     about: str
     profile: Path
-    kind: str  # "ring", "sphere" or "fingers"
+    kind: str  # "ring", "sphere", "fingers" or "press"
     labels: tuple[str, ...]  # of the coils from the core, then of those between points of the hoops
     jumps: tuple[tuple[str, str], ...]  # labels of the points between which each of the latter runs, in their order
-    joints: tuple[str, ...]  # labels of the joints: of the right finger, then of the left one
+    joints: tuple[str, ...]  # labels of the joints: of the right finger, then of the left one, or of the press
+    cells: tuple[str, ...]  # labels of the force cells
     ring: RingNumbers | None
     sphere: SphereNumbers | None
     fingers: HandNumbers | None
+    press: PressNumbers | None
     camera: Optics | None
+    load_cell: LoadCell | None
+    force_cells: ForceCells | None
     coil: CoilNumbers | None
     ground: GroundNumbers | None
     start: StartNumbers | Attitude | None
@@ -130,7 +137,7 @@ def _robot(path: Path, data: dict[str, Any], check: Check) -> RobotFile:
     kind, coils, wiring = check.kind, data.get("coils", {}), data["wiring"]
     points = tuple(coils.get("jump_labels", ()))
     groups = _groups(check)
-    shelled = kind != FINGERS
+    shelled = SHELL in KINDS[kind]
     return RobotFile(
         name=path.stem,
         about=data["about"],
@@ -138,12 +145,16 @@ def _robot(path: Path, data: dict[str, Any], check: Check) -> RobotFile:
         kind=kind,
         labels=(*coils.get("labels", ()), *points),
         jumps=tuple(zip(points, points[1:] + points[:1], strict=True)),
-        joints=tuple(data["fingers"]["labels"]) if kind == FINGERS else (),
+        joints=tuple(data[kind]["labels"]) if kind in (FINGERS, PRESS) else (),
+        cells=tuple(data.get("cells", {}).get("centres_mm", ())),
         ring=RingNumbers(**groups["body"]) if kind == RING else None,
         sphere=SphereNumbers(**groups["body"]) if kind == SPHERE else None,
         fingers=_hand(groups, check.choices) if kind == FINGERS else None,
+        press=press_numbers(path, data, groups, check.choices) if kind == PRESS else None,
         camera=Optics(**groups["camera"]) if "camera" in groups else None,
-        coil=CoilNumbers(**groups["coil"]) if shelled else None,
+        load_cell=LoadCell(**groups["load_cell"]) if "load_cell" in groups else None,
+        force_cells=ForceCells(**groups["cells"]) if "cells" in groups else None,
+        coil=CoilNumbers(**groups["coil"]) if COILS in KINDS[kind] else None,
         ground=GroundNumbers(**groups["ground"]) if shelled else None,
         start=(StartNumbers if kind == RING else Attitude)(**groups["start"]) if shelled else None,
         tolerance=groups["numerics"]["tolerance"] if shelled else 0.0,
@@ -159,7 +170,8 @@ def _groups(check: Check) -> dict[str, dict[str, Any]]:
     """Return the numbers in SI units by their group and field."""
     groups: dict[str, dict[str, Any]] = {}
     for key in check.rows:
-        groups.setdefault(key.target, {})[key.field] = check.entries[key.name].value * key.si
+        if key.name in check.entries:
+            groups.setdefault(key.target, {})[key.field] = check.entries[key.name].value * key.si
     if "nodes" in groups.get("body", {}):
         groups["body"]["nodes"] = int(groups["body"]["nodes"])
     return groups

@@ -6,13 +6,21 @@ print and the SI units of the physics. The ranges are wide, some thousand times 
 solvers lose their figures.
 """
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from math import inf, isfinite, radians
 
-RING, SPHERE, FINGERS = "ring", "sphere", "fingers"  # kinds of robots
-SHELL, COILS = "shell", "coils"  # what robots of some kinds have
+RING, SPHERE, FINGERS, PRESS = "ring", "sphere", "fingers", "press"  # kinds of robots
+SHELL, COILS, SERVOS = "shell", "coils", "servos"  # what robots of some kinds have
+CAMERA, SERVOS, LOAD = "camera", "servos", "load cell"
 BENCH, BATTERY = "bench supply", "battery"  # kinds of power
-KINDS: dict[str, tuple[str, ...]] = {RING: (RING, SHELL, COILS), SPHERE: (SPHERE, SHELL, COILS), FINGERS: (FINGERS,)}
+GRID = "block of cells"  # not of a mesh from a file
+KINDS: dict[str, tuple[str, ...]] = {
+    RING: (RING, SHELL, COILS),
+    SPHERE: (SPHERE, SHELL, COILS),
+    FINGERS: (FINGERS, SERVOS),
+    PRESS: (PRESS, SERVOS),
+}
 """What a robot of each kind has."""
 
 
@@ -29,6 +37,7 @@ class Key:
     most: float = inf
     only: str = ""  # robots that have this have the number
     multiple: int = 0  # it counts, in steps of this many
+    needed: bool = True
 
     @property
     def name(self) -> str:
@@ -49,11 +58,13 @@ class Key:
 
 
 UNITS = (
-    "count", "deg", "deg_per_s", "degc", "g", "gpa", "hz", "j_per_kg_k", "k", "kg_m2", "kg_per_m3", "kj_per_kg",
-    "m_per_s2", "ma", "mah", "mm", "mpa", "mpa_per_k", "ms", "n", "n_m", "n_m2", "n_m_s", "n_per_m", "n_s_per_m", "ohm",
-    "per_s", "percent", "rad_per_s", "ratio", "s", "uohm_m", "us", "v", "w_per_m2_k",
+    "count", "deg", "deg_per_s", "degc", "g", "gpa", "hz", "j_per_kg_k", "k", "kg_m2", "kg_per_m3", "kj_per_kg", "kpa",
+    "kpa_s", "m_per_s2", "ma", "mah", "mm", "mm_per_s", "mpa", "mpa_per_k", "ms", "mv", "n", "n_m", "n_m2", "n_m_s",
+    "n_per_m", "n_s_per_m", "ohm", "pa", "per_s", "percent", "rad_per_s", "ratio", "s", "uohm_m", "us", "v",
+    "w_per_m2_k",
     # Not used above: so that a number in another unit is recognised, and for the derived section.
-    "cm", "kg", "kpa", "m", "mg", "mj", "mohm", "mv", "mw", "n_mm", "pa", "rad", "uj", "uj_per_k", "um", "uw_per_k",
+    "cm", "kg", "m", "mg", "mj", "mm_per_n", "mohm", "mpa_s", "mw", "n_mm", "n_per_mm", "pa_s", "rad", "uj", "uj_per_k",
+    "um", "uw_per_k",
 )  # fmt: skip
 """The units a key may end in."""
 
@@ -119,6 +130,41 @@ KEYS = (
     Key("camera", "rate_hz", "camera", "rate_hz", 1.0, 1, 1000, FINGERS),
     Key("camera", "latency_ms", "camera", "latency_ms", 1.0, 0, 1000, FINGERS),
     Key("camera", "noise_deg", "camera", "noise_deg", 1.0, 0, 10, FINGERS),
+    Key("block", "width_mm", "press", "width", 1e-3, 1, 10000, GRID),
+    Key("block", "height_mm", "press", "height", 1e-3, 1, 10000, GRID),
+    Key("block", "columns_count", "press", "columns", 1.0, 2, 256, GRID, 1),
+    Key("block", "rows_count", "press", "rows", 1.0, 1, 256, GRID, 1),
+    Key("block", "thickness_mm", "press", "thickness", 1e-3, 0.1, 10000, PRESS),
+    Key("material", "youngs_modulus_kpa", "material", "E", 1e3, 0, 1e6, PRESS),
+    Key("material", "viscosity_kpa_s", "material", "c", 1e3, 0, 1e9, PRESS),
+    Key("material", "damping_kpa_s", "material", "c0", 1e3, 0, 1e6, PRESS),
+    Key("material", "parallel_modulus_kpa", "material", "E0", 1e3, 0, 1e6, PRESS),
+    Key("material", "poisson_ratio", "material", "nu", 1.0, -0.9, 0.49, PRESS),
+    Key("material", "youngs_modulus_2_kpa", "material", "E_2", 1e3, 0, 1e6, PRESS, needed=False),
+    Key("material", "viscosity_2_kpa_s", "material", "c_2", 1e3, 0, 1e9, PRESS, needed=False),
+    Key("material", "poisson_2_ratio", "material", "nu_2", 1.0, -0.9, 0.49, PRESS, needed=False),
+    Key("material", "damping_poisson_ratio", "material", "nu_c", 1.0, -0.9, 0.49, PRESS, needed=False),
+    Key("material", "parallel_poisson_ratio", "material", "nu0", 1.0, -0.9, 0.49, PRESS, needed=False),
+    Key("material", "unloading_viscosity_kpa_s", "material", "c_unloading", 1e3, 0, 1e9, PRESS, needed=False),
+    Key("material", "unloading_damping_kpa_s", "material", "c0_unloading", 1e3, 0, 1e6, PRESS, needed=False),
+    Key("indenter", "radius_mm", "press", "R", 1e-3, 0.1, 10000, PRESS),
+    Key("indenter", "width_mm", "press", "w", 1e-3, 0.1, 10000, PRESS),
+    Key("indenter", "at_mm", "press", "at", 1e-3, -10000, 10000, PRESS, needed=False),
+    Key("indenter", "pull_off_n", "press", "pull_off", 1.0, 0, 10000, PRESS),
+    Key("indenter", "tool_mass_g", "press", "tool_mass", 1e-3, 0, 100000, PRESS),
+    Key("axis", "rate_mm_per_s", "screw", "rate_mm_per_s", 1.0, 0.01, 10000, PRESS),
+    Key("axis", "bandwidth_rad_per_s", "screw", "bandwidth_rad_per_s", 1.0, 1, 1000, PRESS),
+    Key("axis", "stall_force_n", "screw", "stall_n", 1.0, 0.001, 100000, PRESS),
+    Key("axis", "stall_current_ma", "screw", "stall_a", 1e-3, 1, 100000, PRESS),
+    Key("axis", "idle_current_ma", "screw", "idle_a", 1e-3, 0, 10000, PRESS),
+    Key("axis", "backlash_mm", "press", "backlash", 1e-3, 0, 5, PRESS),
+    Key("axis", "dead_band_us", "wiring", "dead_band_us", 1.0, 0, 100, PRESS),
+    Key("load_cell", "zero_mv", "load_cell", "zero_v", 1e-3, 0, 3300, PRESS),
+    Key("load_cell", "full_scale_n", "load_cell", "full_n", 1.0, 0.001, 100000, PRESS),
+    Key("load_cell", "noise_n", "load_cell", "noise_n", 1.0, 0, 10000, PRESS),
+    Key("cells", "side_mm", "press", "side", 1e-3, 0.01, 1000, PRESS),
+    Key("cells", "full_scale_kpa", "cells", "full_pa", 1e3, 0.001, 1e6, PRESS),
+    Key("cells", "noise_pa", "cells", "noise_pa", 1.0, 0, 1e9, PRESS),
     Key("wiring", "lead_ohm", "wiring", "lead_ohm", 1.0, only=COILS),
     Key("wiring", "switch_ohm", "wiring", "switch_ohm", 1.0, only=COILS),
     Key("wiring", "source_ohm", "wiring", "source_ohm", 1.0),
@@ -152,15 +198,15 @@ KEYS = (
     Key("start", "roll_deg", "start", "roll", radians(1), -360, 360, SPHERE),
     Key("start", "settle_s", "start", "settle", 1.0, 0, 60, SHELL),
     Key("numerics", "tolerance_um", "numerics", "tolerance", 1e-6, 0.001, 1000, SHELL),
+    Key("numerics", "step_ms", "press", "dt", 1e-3, 1, 100, PRESS),
 )
 
 
-def features_of(kind: str, power: str) -> tuple[str, ...]:
-    """Return what a robot of this kind and with this power has."""
-    return (*KINDS[kind], power)
+def features_of(kind: str, power: str = BENCH, meshed: bool = False) -> tuple[str, ...]:
+    """Return what a robot of this kind and with this power has; one that is not `meshed` has a block of cells."""
+    return (*KINDS[kind], power, *((GRID,) if kind == PRESS and not meshed else ()))
 
 
-def keys_of(kind: str, power: str) -> tuple[Key, ...]:
-    """Return the numbers that a robot of this kind and with this power has."""
-    features = ("", *features_of(kind, power))
-    return tuple(key for key in KEYS if key.only in features)
+def keys_of(features: Collection[str]) -> tuple[Key, ...]:
+    """Return the numbers that a robot with these features has."""
+    return tuple(key for key in KEYS if not key.only or key.only in features)

@@ -10,10 +10,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from hil_sim.bodies.directions import direction
-from hil_sim.robots.keys import COILS, FINGERS, RING, SHELL, SPHERE
+from hil_sim.robots.keys import COILS, FINGERS, PRESS, RING, SERVOS, SHELL, SPHERE
 
 CHIPS = (96, 97)  # PWM chips of the board
 PINS = (8, 9, 10)  # of the board, for servos
+LABELS = {FINGERS: '["R", "L"], the right finger first', PRESS: '["P"]'}
+CELLS_MAX = 13  # of 16 inputs one has the load cell, and two the axis
 Mistakes = Iterator[tuple[str, str]]
 Sections = Mapping[str, dict[str, Any]]
 
@@ -37,7 +39,7 @@ class Text:
 TEXTS = (
     Text("", "about"),
     Text("", "profile"),
-    Text("", "kind", FINGERS, (FINGERS,)),
+    Text("", "kind", SERVOS, (FINGERS, PRESS)),
     Text("shell", "kind", SHELL, (RING, SPHERE)),
     Text("coils", "labels", COILS),
     Text("coils", "jump_labels", COILS, needed=False),
@@ -46,9 +48,15 @@ TEXTS = (
     Text("fingers", "contact", FINGERS, ("frictionless", "stick", "coulomb")),
     Text("fingers", "motion", FINGERS, ("quasi-static", "dynamic")),
     Text("fingers", "labels", FINGERS),
-    Text("wiring", "pins", FINGERS),
+    Text("press", "labels", PRESS),
+    Text("press", "indenter", PRESS, ("cylinder", "flat", "bonded", "polygon")),
+    Text("press", "corners_mm", PRESS, needed=False),
+    Text("press", "plane", PRESS, ("strain", "stress")),
+    Text("press", "mesh", PRESS, needed=False),
+    Text("cells", "centres_mm", PRESS),
+    Text("wiring", "pins", SERVOS),
 )
-CHOICES = {text.name: text.words for text in TEXTS if text.section == "fingers" and text.words}
+CHOICES = {text.name: text.words for text in TEXTS if text.section in (FINGERS, PRESS) and text.words}
 """The texts that an address may set, and what it may set them to."""
 
 
@@ -69,8 +77,11 @@ def mistakes_in(sections: Sections, features: Collection[str]) -> Mistakes:
             yield text.name, f'{text.key}: write it as {text.key} = "text"'
     if COILS in features:
         yield from _coils(sections, SPHERE in features)
-    if FINGERS in features:
-        yield from _fingers(sections)
+    for section, example in LABELS.items():
+        if section in features:
+            yield from _joints(sections, section, example)
+    if PRESS in features:
+        yield from _pressed(sections)
 
 
 def _coils(sections: Sections, in_hoops: bool) -> Mistakes:
@@ -127,15 +138,16 @@ def _outputs(outputs: object, labels: list[str]) -> Mistakes:
         seen[chip, output] = label
 
 
-def _fingers(sections: Sections) -> Mistakes:
-    """Yield what is wrong with the labels of two joints, the right one first, and with the pins of their servos."""
-    labels, pins = sections.get("fingers", {}).get("labels"), sections.get("wiring", {}).get("pins")
-    if not (isinstance(labels, list) and len(labels) == 2 and all(isinstance(label, str) for label in labels)):
+def _joints(sections: Sections, section: str, example: str) -> Mistakes:
+    """Yield what is wrong with the labels of the joints, as many as the example has, and with their servos' pins."""
+    labels, pins = sections.get(section, {}).get("labels"), sections.get("wiring", {}).get("pins")
+    count = example.count('"') // 2
+    if not (isinstance(labels, list) and len(labels) == count and all(isinstance(label, str) for label in labels)):
         if labels is not None:
-            yield "fingers.labels", 'labels: write them as ["R", "L"], the right finger first'
+            yield f"{section}.labels", f"labels: write them as {example}"
         return
-    if labels[0] == labels[1]:
-        yield "fingers.labels", "labels: each joint needs its own"
+    if len(set(labels)) < count:
+        yield f"{section}.labels", "labels: each joint needs its own"
         return
     if pins is None:
         return
@@ -145,5 +157,26 @@ def _fingers(sections: Sections) -> Mistakes:
     for label, pin in pins.items():
         if type(pin) is not int or pin not in PINS:
             yield "wiring.pins", f"pins: {label} on pin {pin}, the board has servos on {', '.join(map(str, PINS))}"
-    if pins[labels[0]] == pins[labels[1]]:
-        yield "wiring.pins", f"pins: {labels[0]} and {labels[1]} share {pins[labels[0]]}"
+    if len({pins[label] for label in labels}) < count:
+        yield "wiring.pins", f"pins: {' and '.join(labels)} share {pins[labels[0]]}"
+
+
+def _pressed(sections: Sections) -> Mistakes:
+    """Yield what is wrong with the mesh of a press's block, the corners of its polygon, and the places of its cells."""
+    press, centres = sections.get("press", {}), sections.get("cells", {}).get("centres_mm", {})
+    if not isinstance(press.get("mesh", ""), str):
+        yield "press.mesh", 'mesh: write it as mesh = "block.msh", a file beside this one'
+    corners = press.get("corners_mm")
+    if not (isinstance(corners, list) and all(map(_is_place, corners))) and corners is not None:
+        yield "press.corners_mm", "corners_mm: write them as [[x, y], ...], around the axis"
+    elif corners is None and press.get("indenter") == "polygon":
+        yield "press.indenter", "indenter polygon needs corners_mm = [[x, y], ...], around the axis"
+    if not (isinstance(centres, dict) and all(map(_is_place, centres.values()))):
+        yield "cells.centres_mm", "centres_mm: write them as { C1 = [x, y], ... }, from the block's lower left corner"
+    elif len(centres) > CELLS_MAX:
+        yield "cells.centres_mm", f"centres_mm: {len(centres)} cells, the converters have {CELLS_MAX} inputs for them"
+
+
+def _is_place(value: object) -> bool:
+    """Return whether this is a point of two numbers."""
+    return isinstance(value, list) and len(value) == 2 and all(type(part) in (int, float) for part in value)
