@@ -9,8 +9,9 @@ from typing import Any
 
 import click
 
-from host.cli.options import json_option
+from host.cli.options import json_option, time_ms
 from host.cli.output import emit, note, writing
+from host.errors import BadRequest
 from host.logbook import read_log
 from host.view import draw_run
 
@@ -32,9 +33,14 @@ def info(file: Path, as_json: bool) -> None:
 @command.command("export")
 @click.argument("file", type=click.Path(path_type=Path))
 @click.option("--topic", default="telemetry", show_default=True, help="telemetry, events, stops, scenes or bytes.")
-@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE.csv", help="Default: stdout.")
-def export(file: Path, topic: str, output: Path | None) -> None:
-    """Write one topic of a log as CSV."""
+@click.option("--fields", metavar="NAME,...", help="displacement, stress, von_mises, strain: as .vtu for ParaView.")
+@click.option("--at", metavar="TIME", help="Since the program began: of the nearest slice; or all: each, and a .pvd.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), metavar="FILE", help="A table's default: stdout.")
+def export(file: Path, topic: str, fields: str | None, at: str | None, output: Path | None) -> None:
+    """Write one topic of a log as CSV, or fields inside a body (mm, kPa) as .vtu, which ParaView opens."""
+    if fields is not None or at is not None:
+        _export_fields(file, fields or "", at or "", output)
+        return
     log = read_log(file)
     if output is None:
         log.write_csv(sys.stdout, topic)
@@ -42,6 +48,24 @@ def export(file: Path, topic: str, output: Path | None) -> None:
     with writing(output), output.open("w", encoding="utf-8", newline="") as table:
         rows = log.write_csv(table, topic)
     note(f"{rows} rows: {output}")
+
+
+def _export_fields(file: Path, fields: str, at: str, output: Path | None) -> None:
+    """Write the slice of a time, or all of them, and say which it was."""
+    if not fields or not at or output is None or output.suffix != ".vtu":
+        raise BadRequest("fields are exported with --fields NAME,... --at TIME (or all) -o FILE.vtu")
+    from host.fieldfile import write_series, write_slice  # noqa: PLC0415  (numpy, which a table does not need)
+
+    names = [name.strip() for name in fields.split(",")]
+    at_s = None if at == "all" else time_ms(at) / 1000
+    recording = read_log(file).recording()
+    with writing(output):
+        if at_s is None:
+            written = write_series(recording, names, output)
+            note(f"{written.slices} slices from {written.t_s:.3f} s on: {written.path}")
+        else:
+            written = write_slice(recording, at_s, names, output)
+            note(f"slice at {written.t_s:.3f} s: {written.path}")
 
 
 @command.command("plot")
