@@ -43,6 +43,7 @@ SERVO = {
     "pulse_hz": 200, "low_us": 500, "high_us": 2500, "span_centi": 18000,
     "ua_per_count": 1611, "low_counts": 410, "high_counts": 3686,
 }  # fmt: skip
+LOOP = json.loads((ROOT / "firmware" / "robots" / "press.json").read_text(encoding="utf-8"))["press"]
 
 
 def round_robot(**coil):
@@ -80,6 +81,27 @@ def mixed_robot():
     rows = [*ROUND["channels"][:2], *JOINTS]
     groups = [["front", "A B"], ["odd", "A R"]]
     return read_profile(json.dumps({**ROUND, "channels": rows, "groups": groups, "servo": SERVO}).encode())
+
+
+def block(**servo):
+    """Return the profile of `press_robot` as it stands in the firmware."""
+    rest = {name: ROUND[name] for name in ROUND if name not in ("coil", "groups")}
+    axis = {"unit": "mm", "least_centi": -500, "most_centi": 1000, "slew_centi_per_s": 1000, "span_centi": 2000}
+    return {
+        **rest,
+        "channels": [{"label": "P", "kind": "servo", "pin": 8, "current": 0, "position": 1}],
+        "groups": [["axis", "P"]],
+        "servo": {**SERVO, **axis, **servo},
+        "load": {"input": 8, "zero_counts": 819, "full_mn": 32768, "most_mn": 18000, "trip_mn": 20000},
+        "press": LOOP,
+        "cells": [{"label": f"C{i}", "input": 1 + i} for i in range(1, 7)],
+        "cell": {"full_pa": 20000},
+    }
+
+
+def press_robot(**servo):
+    """Return a robot of one joint that goes from -5 to 10 mm, 10 mm/s, with a load cell and six force cells."""
+    return read_profile(json.dumps(block(**servo)).encode())
 
 
 def circular():
