@@ -3,9 +3,10 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from host.limits import ServoLimits
 from protocol import program
 
-LIMP_START_US = 200_000  # by which an order may last longer for a joint that was limp: its slew limit from end to end
+LIMP_SLACK_US = 50_000
 
 
 @dataclass
@@ -28,11 +29,19 @@ class Claim:
         self.until_us = min(self.until_us, now_us)
 
 
-def budgets(code: bytes, hold_ms: int = 0) -> Iterator[tuple[int, float]]:
+def limp_start_us(servo: ServoLimits | None) -> float:
+    """Return by how much an order may last longer for a joint that was limp: its slew limit from end to end."""
+    if servo is None:
+        return 0.0
+    return 1e6 * (servo.most_centi - servo.least_centi) / servo.slew_centi_per_s + LIMP_SLACK_US
+
+
+def budgets(code: bytes, servo: ServoLimits | None = None) -> Iterator[tuple[int, float]]:
     """Yield for each channel how long a program can have it on [us], all its repeats included.
 
-    Joints hold for `hold_ms` after each order of a program.
+    Joints hold for as long as they may after each order of a program.
     """
+    hold_ms = servo.hold_max_ms if servo else 0
     times, total_us = [1], {}
     for _, name, *arguments in program.disassemble(code):
         if name == "repeat":
@@ -46,9 +55,9 @@ def budgets(code: bytes, hold_ms: int = 0) -> Iterator[tuple[int, float]]:
         elif name == "aimed":
             for channel in range(32):
                 total_us[channel] = total_us.get(channel, 0.0) + 1000.0 * arguments[2] * times[-1]
-        elif name in ("move", "orient"):
+        elif name in ("move", "orient", "press"):
             for channel in range(32):
-                if name == "orient" or arguments[0] >> channel & 1:
-                    lasts_us = 1000.0 * (arguments[-1] + hold_ms) + LIMP_START_US
+                if name != "move" or arguments[0] >> channel & 1:
+                    lasts_us = 1000.0 * (arguments[-1] + hold_ms) + limp_start_us(servo)
                     total_us[channel] = total_us.get(channel, 0.0) + lasts_us * times[-1]
     yield from total_us.items()

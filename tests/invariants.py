@@ -1,15 +1,14 @@
 """What holds on every bench that any test makes, whatever the test is about; told in sentences.
 
 No coil is on without an order, beyond its order's end or the lease, longer than `on_max_ms`, above its heat budget or
-hotter than its trip; no joint is driven without an order, beyond its order's end or the lease, outside its range or
-faster than its slew limit; each with the margin stated here. Orders are read off the line (orders.py), what the coils
-and joints did off the bench (witness.py). A fault that breaks the very part that holds an invariant excuses what it
-must, see EXCUSES.
+hotter than its trip; no joint has pulses without an order, beyond its order's end or the lease, outside its range or
+faster than its slew limit, and none pushes on beyond the force that trips (ways.py); each with the margin stated here.
+Orders are read off the line (orders.py), what the coils and joints did off the bench (witness.py). A fault that breaks
+the very part that holds an invariant excuses what it must, see LATE_US.
 
 MARGINS. A step is 5 ms, and the step that switches off spends up to 2.5 ms on its buses before it does. The robot
 reckons a coil's heat with its profile's resistance and without stress, the bench from what is there: the true
-temperature runs ahead of the estimate while a stretched coil transforms, most in a body that does not move. Pulses are
-taken over at the end of a period: two of them may come with one step between, or with three.
+temperature runs ahead of the estimate while a stretched coil transforms, most in a body that does not move.
 """
 
 from bisect import bisect_left
@@ -21,25 +20,24 @@ from math import exp, inf
 from host.profile import Profile
 from tests.claims import Claim
 from tests.orders import Ledger
+from tests.ways import STEP_US, Spell, Way, path, pushed
 
-STEP_US = 5_000
 WITHIN_US = STEP_US + 2_500
 SLOT_US = 4_000  # a pause shorter than this is the firmware measuring, no pause
 TRIP_MARGIN_K = 10.0
-ANGLE_MARGIN_DEG = 0.05  # rounding of the pulses' width
 HEAT_MARGIN = 0.05
-
-Spell = tuple[int, int]
 
 
 @dataclass(frozen=True)
 class Excuse:
     """What a fault makes of the invariants from its time on.
 
-    Coils may go off so much later; the one `coil` that it names, or any, may be on so long without an order.
+    Coils may go off so much later, and joints go limp; the one `coil` that it names, or any, may be on so long without
+    an order.
     """
 
     late_us: int = 0
+    limp_us: int = 0
     coil: str = ""
     stray_us: int = 0
 
@@ -48,6 +46,7 @@ LATE_US = {
     "hang": 50_000,  # the monostable's window, from the last heartbeat on
     "i2c-bit-error": 325_000,  # until a write that went astray is put right, see firmware/control.py
 }
+LIMP_US = {"hang": 205_000}  # pulses need no program: they go on until the watchdog resets
 STRAY_US = {
     "mosfet-stuck": 155_000,  # until it is found, see tests/fault_table.py
     "i2c-bit-error": 325_000,
@@ -64,8 +63,8 @@ class Run:
     peaks_degc: Sequence[float]
     energy_j: Sequence[tuple[int, Sequence[float]]]  # of each channel up to that time
     excuses: Sequence[tuple[int, Excuse]] = field(default_factory=tuple)  # each from its time on
-    angles: Sequence[Sequence[tuple[int, float]]] = ()  # of each joint: from when on it is told which angle [deg]
-    found: Sequence[dict[int, float]] = ()  # and where it stood [deg] when it began to be driven, by the time
+    ways: Sequence[Way] = ()  # of each joint
+    forces: Sequence[tuple[int, float]] = ()  # on the load cell [N], by the time
 
 
 def broken(run: Run) -> Iterator[str]:
@@ -73,7 +72,7 @@ def broken(run: Run) -> Iterator[str]:
     coils = len(run.profile.coil_labels)
     for channel, label in enumerate(run.profile.labels):
         ordered = (*_orders(run, channel), *_lease(run, channel))
-        own = (*_length(run, channel), *_heat(run, channel)) if channel < coils else _path(run, channel - coils)
+        own = (*_length(run, channel), *_heat(run, channel)) if channel < coils else _way(run, channel)
         for what in (*ordered, *own):
             yield f"{'coil' if channel < coils else 'joint'} {label} was {what}"
 
@@ -86,7 +85,7 @@ def _orders(run: Run, channel: int) -> Iterator[str]:
         left = [spell]
         for claim in near:
             if not claim.limited:
-                left = list(_without(left, claim.from_us, claim.until_us + _late(run, claim.until_us)))
+                left = list(_without(left, claim.from_us, claim.until_us + _late(run, channel, claim.until_us)))
         for begin, end in left:
             over_us = _charged(run, channel, [claim for claim in near if claim.limited], begin, end)
             if over_us > _stray(run, channel, end):
@@ -96,10 +95,10 @@ def _orders(run: Run, channel: int) -> Iterator[str]:
 def _charged(run: Run, channel: int, claims: Sequence[Claim], begin: int, end: int) -> float:
     """Take a stretch of time from the budgets of claims; return what none of them has left."""
     due_us: float = end - begin
-    late_us = _late(run, end)
+    late_us = _late(run, channel, end)
     for claim in claims:
         left_us = claim.budget_us.get(channel, 0.0)
-        if left_us and claim.from_us <= begin and end <= claim.until_us + _late(run, claim.until_us):
+        if left_us and claim.from_us <= begin and end <= claim.until_us + _late(run, channel, claim.until_us):
             due_us, late_us = due_us - late_us, 0  # an order may end late, once
             paid_us = min(left_us, max(0.0, due_us))
             claim.budget_us[channel] = left_us - paid_us
@@ -115,14 +114,14 @@ def _lease(run: Run, channel: int) -> Iterator[str]:
         for (_, until), (then, _) in zip(alive[first:], alive[first + 1 :], strict=False):
             if until >= end:
                 break
-            over_us = min(end, then) - max(begin, until + _late(run, until))
+            over_us = min(end, then) - max(begin, until + _late(run, channel, until))
             if over_us > 0:
                 yield f"on for {over_us / 1e3:.1f} ms beyond the lease, that ended at {until / 1e6:.4f} s"
 
 
 def _length(run: Run, channel: int) -> Iterator[str]:
     for begin, end in run.spells[channel]:
-        limit_us = 1000 * run.profile.coil.on_max_ms + _late(run, end)
+        limit_us = 1000 * run.profile.coil.on_max_ms + _late(run, channel, end)
         if end - begin > limit_us:
             yield f"on for {(end - begin) / 1e3:.1f} ms without a pause, up to {end / 1e6:.4f} s"
 
@@ -136,25 +135,19 @@ def _heat(run: Run, channel: int) -> Iterator[str]:
         yield f"given {most_mj:.0f} mJ, its heat budget is {coil.heat_budget_mj} mJ"
 
 
-def _path(run: Run, joint: int) -> Iterator[str]:
-    """Yield where a joint was told an angle that it may not have, or one too far from the last."""
-    servo = run.profile.servo
-    low, high, speed = servo.least_centi / 100, servo.most_centi / 100, servo.slew_centi_per_s / 100
-    for at_us, deg in run.angles[joint]:
-        if not low - ANGLE_MARGIN_DEG <= deg <= high + ANGLE_MARGIN_DEG:
-            yield f"told {deg:.2f} deg at {at_us / 1e6:.4f} s, its range is {low:g} to {high:g}"
-    found = run.found[joint]
-    for (before_us, before), (at_us, deg) in pairwise([(0, 0.0), *run.angles[joint]]):
-        before_us, before = (at_us, found[at_us]) if at_us in found else (before_us, before)
-        most = speed * (at_us - before_us + 2 * STEP_US) * 1e-6
-        if abs(deg - before) > most + ANGLE_MARGIN_DEG:
-            yield f"told to turn by {abs(deg - before):.2f} deg at {at_us / 1e6:.4f} s, at most {most:.2f}"
+def _way(run: Run, channel: int) -> Iterator[str]:
+    way = run.ways[channel - len(run.profile.coil_labels)]
+    yield from path(way, run.profile.servo)
+    if run.profile.load:
+        yield from pushed(way, run.forces, run.profile.load, lambda at_us: _late(run, channel, at_us))
 
 
 def excuse_of(fault: str) -> Excuse:
     """Return what a fault excuses."""
     name, _, argument = fault.partition(":")
-    return Excuse(LATE_US.get(name, 0), "" if argument.isdigit() else argument, STRAY_US.get(name, 0))
+    late_us = LATE_US.get(name, 0)
+    coil = "" if argument.isdigit() else argument
+    return Excuse(late_us, LIMP_US.get(name, late_us), coil, STRAY_US.get(name, 0))
 
 
 def most_heat_mj(run: Run, channel: int) -> float:
@@ -184,9 +177,11 @@ def spells_of(history: Sequence[tuple[int, float]], now_us: int) -> list[Spell]:
     return spells
 
 
-def _late(run: Run, at_us: float) -> int:
-    """Return how much later than its end a coil may go off at that time."""
-    return WITHIN_US + max((excuse.late_us for since_us, excuse in run.excuses if since_us <= at_us), default=0)
+def _late(run: Run, channel: int, at_us: float) -> int:
+    """Return how much later than its end a coil may go off at that time, or a joint go limp."""
+    is_coil = channel < len(run.profile.coil_labels)
+    excused = (each.late_us if is_coil else each.limp_us for since_us, each in run.excuses if since_us <= at_us)
+    return WITHIN_US + max(excused, default=0)
 
 
 def _stray(run: Run, channel: int, at_us: int) -> int:

@@ -14,11 +14,11 @@ from math import inf
 from host.profile import Profile
 from protocol import frames, messages, program
 from protocol.link import Link, Received
-from tests.claims import LIMP_START_US, Claim, budgets
+from tests.claims import Claim, budgets, limp_start_us
 
 ENDED = (messages.FINISHED, messages.ABORTED, messages.TRIP, messages.DISARMED)
 TESTED = (messages.ARM, messages.CALIBRATE)
-DRIVING = (messages.FIRE, messages.MOVE, messages.ORIENT)
+DRIVING = (messages.FIRE, messages.MOVE, messages.ORIENT, messages.PRESS)
 TEST_US = 2_000_000  # the longest that a self-test takes between such an order and its answer
 PULSES_US = 20_000  # and all of it that one coil is on
 TALKS_MAX = 32  # sessions that are listened to at once: one read may hold so many greetings
@@ -43,7 +43,7 @@ class Ledger:
         self.alive: list[tuple[int, float]] = [(0, 0)]
         self._profile = profile
         self._joints = profile.mask(profile.joint_labels)
-        self._hold_ms = profile.servo_limits.hold_max_ms if profile.servo_limits else 0
+        self._limp_us = limp_start_us(profile.servo_limits)
         self._seed = seed
         self._reads = 0
         self._current: list[Claim] = []
@@ -104,8 +104,8 @@ class Ledger:
         elif message is messages.FIRE and order.duty_permille:
             claim = Claim(order.coils, now_us, now_us + order.hold_ms * 1000)
         elif message is messages.MOVE:
-            claim = Claim(order.joints, now_us, now_us + (order.over_ms + order.hold_ms) * 1000 + LIMP_START_US)
-        elif message is messages.ORIENT:
+            claim = Claim(order.joints, now_us, now_us + (order.over_ms + order.hold_ms) * 1000 + self._limp_us)
+        elif message in (messages.ORIENT, messages.PRESS):
             claim = Claim(self._joints, now_us, now_us + (order.time_ms + order.hold_ms) * 1000)
         elif message is messages.START:
             claim = Claim((1 << 32) - 1, now_us, inf, of_program=True)
@@ -160,7 +160,7 @@ class Ledger:
             self._replaced(claim.mask if claim else order.coils, claim, count, now_us)
         elif message is messages.START and not self._doubtful:
             self._outlives = self._may_outlive
-            claim.budget_us = dict(budgets(bytes(self._upload), self._hold_ms))
+            claim.budget_us = dict(budgets(bytes(self._upload), self._profile.servo_limits))
             self._live(now_us)
 
     def _replaced(self, coils: int, by: Claim | None, count: int, now_us: int) -> None:

@@ -66,10 +66,11 @@ ENDS = "if now_ms - self._end_ms[joint] >= 0:"
 ORDER_END = "self._end_ms[joint] = now_ms + over_ms + hold_ms"
 LEFT, LIVES = "def lease_left_ms(self) -> int:", " return self.lease_ms\n    def _(self):"
 LOSSES = [
-    ("joints.py", ENDS, "if False:", moved, "joint R was on for 39.* ms that no order allows"),
+    ("joints.py", ENDS, "if False:", moved, "joint R was on for 37.* ms that no order allows"),
     ("joints.py", ORDER_END, ORDER_END + " + 250", moved, "no order allows"),
     ("commands.py", "limbs.move(order.joints,", "limbs.move(order.joints << 1,", moved, "joint L .* no order allows"),
     ("core.py", "self.trip(codes.STOP)", "pass", stopped, "no order allows"),
+    ("control.py", "self.limbs.all_off()", "pass", stopped, "no order allows"),
     ("commands.py", "self._core.disarm()", "pass", disarmed, "no order allows"),
     ("core.py", LEFT, LEFT + LIVES, deserted, "beyond the lease"),
     (
@@ -79,7 +80,7 @@ LOSSES = [
         turned,
         "no order allows",
     ),
-    ("joints.py", "if passed_ms < over_ms:", "if False:", swung, "told to turn by 1[45].* deg"),
+    ("joints.py", "if passed_ms < over_ms:", "if False:", swung, "told to move by 1[45].* deg"),
     ("profile.py", "from_low = centi + self", "from_low = 20 * centi + self", opened, "its range is -30 to 30"),
     ("player.py", "self._limbs.play_move(mask,", "self._limbs.play_move(3,", played, "joint L .* no order allows"),
 ]

@@ -19,8 +19,10 @@ from protocol.canbus import Assembler
 from tests.invariants import Excuse, Run, broken, excuse_of, spells_of
 from tests.orders import Ledger
 from tests.pulses import Pulses
+from tests.ways import Way
 
 HEARD, TOLD, RESET = range(3)
+FELT_N = 1.0  # what is less is taken down once
 
 
 class Witness:
@@ -32,10 +34,12 @@ class Witness:
         self._line: list[tuple[int, int, bytes]] = []
         self._energy_j: list[tuple[int, list[float]]] = []
         self._excuses: list[tuple[int, Excuse]] = []
+        self._forces: list[tuple[int, float]] = []
         self._at_line()
         self._at_can()
         self._pulses = {pin: Pulses(bench, pin) for pin in bench.board.servos}
         self._at_parts()
+        self._at_load()
 
     def excuse(self, excuse: Excuse) -> None:
         """Ask less of the rest of the run."""
@@ -71,9 +75,10 @@ class Witness:
         driven = [coil.history for coil in bench.coils] + [each.history for each in pulses]
         spells = [spells_of(history, now_us) for history in driven]
         energies = [*self._energy_j, (now_us, bench._energy_j.tolist())]
-        angles = [each.angles(profile.servo) for each in pulses]
-        found = [each.found for each in pulses]
-        return Run(profile, ledger, spells, bench._peak_degc.tolist(), energies, self._excuses, angles, found)
+        joints = zip(pulses, spells[len(bench.coils) :], strict=True)
+        ways = [Way(each.positions(profile.servo), each.found, of) for each, of in joints]
+        peaks = bench._peak_degc.tolist()
+        return Run(profile, ledger, spells, peaks, energies, self._excuses, ways, self._forces)
 
     def _at_line(self) -> None:
         """Listen at the device's end of the line."""
@@ -119,8 +124,6 @@ class Witness:
 
         def changes() -> None:
             changed()
-            for each in self._pulses.values():
-                each.note()
             energy_j.append((bench.clock.now_us, bench._energy_j.tolist()))
 
         def resets(cause: int) -> None:
@@ -133,6 +136,21 @@ class Witness:
                 self._excuses.append((time_us, excuse_of(data.decode("latin-1"))))
 
         board.changed, board.reset_processor, bench.journal.note = changes, resets, notes
+
+    def _at_load(self) -> None:
+        """Feel what a load cell would, whenever the body has moved on."""
+        bench, plant, forces = self.bench, self.bench.plant, self._forces
+        if not hasattr(plant, "load_n"):
+            return
+        advance = plant.advance
+
+        def advances(duration_us: int, coil_power_w: object) -> None:
+            advance(duration_us, coil_power_w)
+            force = float(plant.load_n)
+            if abs(force) > FELT_N or (forces and abs(forces[-1][1]) > FELT_N):
+                forces.append((bench.clock.now_us, force))
+
+        plant.advance = advances
 
 
 def profile_text(bench: Bench) -> bytes:
