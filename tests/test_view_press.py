@@ -15,7 +15,7 @@ from host.view import draw_dents, draw_film, draw_run, draw_stresses
 from host.view.dents import dents_figure
 from host.view.meshes import deformed, edges_of, trails
 from host.view.pressing import press_of, slices_of
-from host.view.pressplot import telling
+from host.view.pressplot import body, telling
 from host.view.stresses import KINDS, at_nodes, colours_of, levels_of, stresses_figure
 from tests.pinched_plate import recorded_pinch
 from tests.press_samples import MESHES
@@ -174,6 +174,20 @@ def test_a_run_that_nobody_saw_has_the_curves_of_the_press_alone(tmp_path):
     written = set(texts(tmp_path / "a.svg"))
     assert {"load cell", "P, measured", *LABELS} <= written
     assert not {"true", "indenter, true", "a", "b"} & written
+
+
+def test_a_block_that_nobody_saw_inside_is_drawn_by_its_surface(pressed, tmp_path):
+    unseen = replace(pressed, mesh=None, slices=[])
+    scene = pressed.scenes[telling(pressed)[1]]
+
+    draw_run(unseen, tmp_path / "a.svg")
+
+    (left, bottom), (right, _) = (getattr(body(unseen, scene).vertices, end)(axis=0) for end in ("min", "max"))
+    assert [left, bottom, right] == pytest.approx([0.0, 0.0, 80.0], abs=1.0)
+    assert body(pressed, scene).vertices[:, 1].max() == pytest.approx(
+        body(unseen, scene).vertices[:, 1].max(), abs=1e-5
+    )
+    assert {"a", "b", "load cell"} <= set(texts(tmp_path / "a.svg"))
 
 
 def test_a_press_that_still_presses_is_shown_at_even_times():

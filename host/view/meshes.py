@@ -13,9 +13,9 @@ from matplotlib.path import Path
 from numpy.typing import ArrayLike, NDArray
 
 from host.fields import Mesh, Slice
-from host.recording import Recording, Scene
+from host.recording import Recording
 from host.view.film import Box
-from host.view.pressing import at_slice
+from host.view.pressing import at_slice, nearest
 from host.view.style import GROUND, INK, Style
 
 Points = NDArray[np.float64]
@@ -86,7 +86,7 @@ def draw_before(axes: Axes, mesh: Mesh) -> None:
 
 def draw_tool(axes: Axes, recording: Recording, each: Slice) -> None:
     """Draw what presses on the block, where it was at that instant."""
-    scene = nearest(recording, each)
+    scene = recording.scenes[nearest(recording.scenes, each.host_ms)]
     lower = at_slice(recording, each, "depth_mm") - scene["depth_mm"]
     fill_tool(axes, np.array(scene["indenter"]["outline_mm"], dtype=float) - [0.0, lower])
 
@@ -113,11 +113,6 @@ def draw_dent(axes: Axes, mesh: Mesh, each: Slice) -> None:
     axes.annotate("", (x, low), (x, before + 4.0), arrowprops={"arrowstyle": "-|>", "lw": 0.6, "color": INK}, zorder=6)
     style: Style = {"ha": "center", "va": "top", "fontsize": 7, "color": INK, "zorder": 6}
     axes.text(x, low - 2.5, f"{dent_mm(each):.2f} mm", bbox={"fc": "white", "ec": "none", "pad": 1.2}, **style)
-
-
-def nearest(recording: Recording, each: Slice) -> Scene:
-    """Return the scene that is nearest in time to a slice."""
-    return min(recording.scenes, key=lambda scene: abs(scene["host_ms"] - each.host_ms))
 
 
 def path_of(points: Points, walks: list[list[int]]) -> Path:

@@ -6,6 +6,7 @@ force is first reached, the hold ends when the indenter begins to rise.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 
 from host.errors import BadRequest
 from host.fields import Slice
-from host.recording import Recording
+from host.recording import Recording, Scene
 from host.view.instants import Numbers
 
 NAMES = ("push", "end of the hold", "just after release", "long after")
@@ -68,6 +69,12 @@ def at_slice(recording: Recording, each: Slice, name: str) -> float:
     """Return what the scenes around a slice tell for its time."""
     seen = [scene["host_ms"] for scene in recording.scenes]
     return float(np.interp(each.host_ms, seen, of_scenes(recording, name)))
+
+
+def nearest(seen: Sequence[Scene] | Sequence[Slice], host_ms: int) -> int:
+    """Return which of scenes or slices is nearest in time."""
+    times = [each.host_ms if isinstance(each, Slice) else each["host_ms"] for each in seen]
+    return int(np.abs(np.array(times) - host_ms).argmin())
 
 
 def _around(touching: NDArray[np.bool_], index: int) -> tuple[int, int]:

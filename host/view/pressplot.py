@@ -11,16 +11,27 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon, Rectangle
+from matplotlib.patches import PathPatch, Rectangle
+from matplotlib.path import Path
 
 from host.errors import BadRequest
 from host.recording import Recording, Scene
 from host.view.curves import label_time, record_times
 from host.view.film import Box, frame
 from host.view.instants import Numbers, scene_times
-from host.view.meshes import EDGE_MM, FLESH, draw_ruler, fill_tool, height_of
+from host.view.meshes import (
+    EDGE_MM,
+    FLESH,
+    deformed,
+    draw_ruler,
+    edges_of,
+    fill_tool,
+    height_of,
+    path_of,
+    trails,
+)
 from host.view.presscurves import draw_cells, draw_depth, draw_force, draw_joint_current
-from host.view.pressing import press_of
+from host.view.pressing import nearest, press_of, slices_of
 from host.view.sheet import BOTTOM_MM, GAP_MM, LEFT_MM, NAME_MM, RIGHT_MM, TOP_MM, Sheet
 from host.view.style import FAINT, INK, PAGE_MM, Style
 
@@ -51,18 +62,17 @@ def press_figure(recording: Recording) -> Figure:
 def telling(recording: Recording) -> list[int]:
     """Return the scenes that tell a run: push, hold, release and long after, or evenly when there was no such press."""
     try:
-        return list(press_of(recording))
+        told = [nearest(recording.scenes, each.host_ms) for each in slices_of(recording)] if recording.slices else []
+        return told or list(press_of(recording))
     except BadRequest:
         return [round(i) for i in np.linspace(0, len(recording.scenes) - 1, SHOWN)]
 
 
 def strip_box(recording: Recording, shown: list[int]) -> Box:
     """Return the room that the block needs in these scenes, with what presses on it."""
-    block = recording.scenes[0]["block"]
-    surface = np.vstack([recording.scenes[i]["surface_mm"] for i in shown])
-    left, right = min(0.0, float(surface[:, 0].min())), max(block["width_mm"], float(surface[:, 0].max()))
-    top = max(block["height_mm"], float(surface[:, 1].max()))
-    return left - EDGE_MM, right + EDGE_MM, -EDGE_MM, top + HEAD_MM
+    points = np.vstack([body(recording, recording.scenes[i]).vertices for i in shown])
+    (left, bottom), (right, top) = points.min(axis=0), points.max(axis=0)
+    return float(left) - EDGE_MM, float(right) + EDGE_MM, float(bottom) - EDGE_MM, float(top) + HEAD_MM
 
 
 def draw_strip(sheet: Sheet, recording: Recording, shown: list[int], box: Box) -> None:
@@ -72,7 +82,9 @@ def draw_strip(sheet: Sheet, recording: Recording, shown: list[int], box: Box) -
     pressures = [cell["pressure_kpa"] for i in shown for cell in recording.scenes[i]["cells"].values()]
     for i, index in enumerate(shown):
         axes, scene = sheet.axes(LEFT_MM + i * each, each, high), recording.scenes[index]
-        draw_scene(axes, scene, max([1.0, *pressures]))
+        axes.add_patch(PathPatch(body(recording, scene), fc=FLESH, ec=INK, lw=0.6, zorder=2))
+        draw_cells_of(axes, scene, max([1.0, *pressures]))
+        fill_tool(axes, scene["indenter"]["outline_mm"])
         if i == 0:
             draw_ruler(axes, box)
         frame(axes, box)
@@ -84,18 +96,24 @@ def draw_strip(sheet: Sheet, recording: Recording, shown: list[int], box: Box) -
     sheet.y_mm -= high + WORDS_MM + GAP_MM
 
 
-def draw_scene(axes: Axes, scene: Scene, most_kpa: float) -> None:
-    """Draw the block with its surface as it is, its cells where they were put, and what presses on it."""
-    surface, wide = np.array(scene["surface_mm"], dtype=float), scene["block"]["width_mm"]
-    outline = np.vstack([[0.0, 0.0], surface[np.argsort(surface[:, 0], kind="stable")], [wide, 0.0]])
-    axes.add_patch(Polygon(outline, fc=FLESH, ec=INK, lw=0.6, zorder=2))
+def body(recording: Recording, scene: Scene) -> Path:
+    """Return the outline of the block: of its mesh at that time, or without one its surface between upright sides."""
+    if recording.mesh is not None and recording.slices:
+        taken = recording.slices[nearest(recording.slices, scene["host_ms"])]
+        return path_of(deformed(recording.mesh, taken), trails(edges_of(recording.mesh)[1]))
+    surface, (x, y) = np.array(scene["surface_mm"], dtype=float), scene["block"].get("corner_mm", (0.0, 0.0))
+    corners = [[x + scene["block"]["width_mm"], y], [x, y]]
+    return Path(np.vstack([surface, corners, surface[:1]]), closed=True)
+
+
+def draw_cells_of(axes: Axes, scene: Scene, most_kpa: float) -> None:
+    """Draw the force cells where they were put, with what presses on each."""
     for cell in scene["cells"].values():
         side, (x, y), pressure = cell["side_mm"], cell["centre_mm"], float(cell["pressure_kpa"])
         shade = colormaps[CELLS](DARKEST * min(1.0, max(0.0, pressure / most_kpa)))
         axes.add_patch(Rectangle((x - side / 2, y - side / 2), side, side, fc=shade, ec=INK, lw=0.3, zorder=3))
         text = f"{pressure:.1f}" if abs(pressure) >= 0.05 else "0"
         axes.text(x, y - side / 2 - 0.6, text, ha="center", va="top", fontsize=5, color=INK, zorder=4)
-    fill_tool(axes, scene["indenter"]["outline_mm"])
 
 
 def draw_curves(sheet: Sheet, recording: Recording, panels: list[Panel], shown_s: Numbers) -> None:
