@@ -23,7 +23,8 @@ TYPES = {
 UNITS = {
     "us": ("us", 1), "ms": ("ms", 1), "ns": ("ns", 1), "mv": ("mV", 1), "ma": ("mA", 1), "mohm": ("mohm", 1),
     "permille": ("permille", 1), "percent": ("%", 1), "degc": ("degC", 1), "decidegc": ("degC", 0.1),
-    "decideg": ("deg", 0.1), "centideg": ("deg", 0.01), "bytes": ("bytes", 1), "mj": ("mJ", 1),
+    "decideg": ("deg", 0.1), "centideg": ("deg", 0.01), "centi": ("deg or mm", 0.01), "bytes": ("bytes", 1),
+    "mj": ("mJ", 1), "mn": ("mN", 1), "pa": ("Pa", 1),
 }  # fmt: skip
 LIMIT = re.compile(r" ?\[(?:(-?\d+)\.\.(-?\d+)|([A-Z_]+)|\*((?: \w+:\w)+))\]$")
 ANSWERS = ("identity", "dictionary_page", "stopped", "nak")  # of the unseeded kinds, those that come from the robot

@@ -13,7 +13,9 @@ from typing import Any
 import click
 
 from docs import cheader, cvectors, dbc, dictionary, faultspage, hardwarepage, protocolpage, schematic, vectors
+from host import errors
 from host.cli import main as softrig
+from host.cli.explain import JOINTS
 from host.gait.errors import ROWS
 from protocol import causes
 
@@ -24,9 +26,12 @@ MADE = "<!-- Made by docs/generate.py: change the table it comes from and run `m
 UNITS = {
     "_uj_per_k": "µJ/K", "_uw_per_k": "µW/K", "_mv": "mV", "_ma": "mA", "_mj": "mJ", "_uj": "µJ", "_mohm": "mΩ",
     "_ms": "ms", "_degc": "°C", "_permille": "‰", "bytes": "bytes", "_centideg": "0.01°", "_hz": "Hz", "_us": "µs",
-    "_centideg_per_s": "0.01°/s", "_permille_per_s": "‰/s", "_counts": "counts", "ua_per_count": "µA",
+    "_centi": "0.01 {joint}", "_centi_per_s": "0.01 {joint}/s", "_mn": "mN", "_pa": "Pa",
+    "_um_per_s_per_n": "µm/s per N", "_um_per_s": "µm/s", "_permille_per_s": "‰/s", "_counts": "counts",
+    "ua_per_count": "µA",
 }  # fmt: skip
-SECTIONS = ("coil", "servo", "camera", "orient", "supply", "session", "program")  # of a profile
+# Of a profile.
+SECTIONS = ("coil", "servo", "camera", "orient", "load", "press", "cell", "supply", "session", "program")
 SENSORS = {"Attitude sensor": "imu", "Camera": "camera"}
 WIDTH = 100  # of the help texts
 
@@ -73,7 +78,11 @@ def protocol_page() -> str:
 
 def codes_page() -> str:
     """Return every refusal, fault and script error; `softrig explain CODE` prints one of them."""
-    robot = [(row.name, str(row.number), row.unit, row.cause, row.did, row.todo) for row in causes.CODES]
+    units = [errors.unit_of(row, JOINTS) for row in causes.CODES]
+    robot = [
+        (row.name, str(row.number), unit, row.cause, row.did, row.todo)
+        for row, unit in zip(causes.CODES, units, strict=True)
+    ]
     script = [(row.code, str(row.exit_code), row.cause, row.todo) for row in ROWS]
     return "\n".join(
         (
@@ -111,10 +120,16 @@ def limits_page() -> str:
         sensors = [(name, profile[key]["address"]) for name, key in SENSORS.items() if key in profile]
         sensor = "".join(f" {name} at 0x{address:02X}." for name, address in sensors)
         parts += [f"## {profile['robot']}\nSupply {profile['supply_mv']} mV.{sensor}\n"]
-        parts += [table(("bit", "label", "kind", "driven by"), channels), table(("group", "labels"), groups)]
+        parts.append(table(("bit", "label", "kind", "driven by"), channels))
+        parts += [table(("group", "labels"), groups)] if groups else []
+        cells = [(str(i), row["label"], f"AIN{row['input']}") for i, row in enumerate(profile.get("cells", ()))]
+        parts += [table(("bit", "force cell", "read on"), cells)] if cells else []
         sections = [part for part in SECTIONS if part in profile]
+        joint = profile.get("servo", {}).get("unit", "")
         limits = [
-            (f"{part}.{key}", str(value), unit_of(key)) for part in sections for key, value in profile[part].items()
+            (f"{part}.{key}", str(value), unit_of(key, joint))
+            for part in sections
+            for key, value in profile[part].items()
         ]
         parts.append(table(("limit", "value", "unit"), limits))
     return "\n".join(parts)
@@ -127,9 +142,10 @@ def wired(row: dict[str, Any]) -> str:
     return f"0x{row['chip']:02X}, output {row['output']}"
 
 
-def unit_of(key: str) -> str:
-    """Return the unit that ends a profile's key, whether or not `_max` follows it."""
-    return next((unit for end, unit in UNITS.items() if key.removesuffix("_max").endswith(end)), "")
+def unit_of(key: str, joint: str) -> str:
+    """Return the unit that ends a profile's key, whether or not `_max` follows it; `joint` is that of the joints."""
+    found = next((unit for end, unit in UNITS.items() if key.removesuffix("_max").endswith(end)), "")
+    return found.format(joint=joint)
 
 
 def commands_page() -> str:

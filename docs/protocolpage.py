@@ -10,6 +10,8 @@ from firmware import greetings, selftest, subscriptions
 from firmware.rates import RATES
 from firmware.subscriptions import STEP_MS
 from host import handshake, session, silence, stopping
+from host.cli.explain import JOINTS
+from host.errors import unit_of
 from protocol import canbus, causes, codes, flight, frames, link, messages, program, secret
 from protocol.variables import USUAL, VARIABLES, veiled
 
@@ -26,12 +28,14 @@ ARGUMENTS = {
     "off": "coils u32",
     "aim": "place u8, ahead u8, circle of 8 channels u64 [255: none]",
     "aimed": "place u8, duty u16 [permille], time u16 [ms], cut-off u16 [0.1 C; 0: none], ramp u16 [ms]",
-    "move": "joints u32, target i16 [0.01 deg], time u16 [ms]",
+    "move": "joints u32, target i16 [0.01 of the joint's unit], time u16 [ms]",
     "orient": "target i16 [0.01 deg], time u16 [ms]",
+    "press": "target u16 [mN], over u16 [ms], time u32 [ms]",
 }
 SOURCES = (
     "1 coil temperature, 2 supply current, 3 supply voltage, 4 board temperature, 5 coil heat, 6 roll, 7 pitch, "
-    "8 coil nearest to down, 9 joint angle [0.01 deg], 10 joint current [mA], 11 angle of the gripped object [0.01 deg]"
+    "8 coil nearest to down, 9 position of the joint [0.01 of its unit], 10 joint current [mA], 11 angle of the "
+    "gripped object [0.01 deg], 12 force on the load cell [mN], 13 pressure on the force cell [Pa]"
 )
 STATES = {
     "boot": "for less than a control step after its start",
@@ -135,6 +139,10 @@ def _session(table: Table) -> dict[str, object]:
         "no_camera": codes.NO_CAMERA,
         "not_held": codes.NOT_HELD,
         "camera": codes.CAMERA,
+        "no_load_cell": codes.NO_LOAD_CELL,
+        "force_limit": codes.FORCE_LIMIT,
+        "overload": codes.OVERLOAD,
+        "load_cell": codes.LOAD_CELL,
         "keepalive_ms": session.KEEPALIVE_US // 1000,
         "ask_ms": handshake.ASK_MS,
         "stop_again_ms": stopping.AGAIN_US // 1000,
@@ -255,7 +263,7 @@ def _beacons() -> str:
 
 def _tables(table: Table) -> dict[str, object]:
     lists = [(name, ", ".join(f"{number} {word}" for number, word in names.items())) for name, names in enums().items()]
-    told = [(row.name, str(row.number), row.unit, row.cause) for row in causes.CODES]
+    told = [(row.name, str(row.number), unit_of(row, JOINTS), row.cause) for row in causes.CODES]
     return {
         "messages": "\n".join(message_section(row, table) for row in rows()),
         "enums": table(("enum", "numbers and names"), [row for row in lists if row[0] != "CODES"]),

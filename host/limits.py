@@ -120,10 +120,12 @@ class LoadLimits:
 
 @dataclass(frozen=True, slots=True)
 class PressLimits:
-    """How the robot regulates the force of its only joint; `touch_mn` is what it takes as touching."""
+    """How the robot regulates the force of its only joint; up to `touch_mn` it takes it as touching nothing."""
 
     gain_um_per_s_per_n: int
     reset_permille_per_s: int
+    smooth_ms: int
+    approach_um_per_s: int
     touch_mn: int
 
 

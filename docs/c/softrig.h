@@ -70,6 +70,7 @@ enum {
     SOFTRIG_KIND_CANCEL = 0x23,
     SOFTRIG_KIND_MOVE = 0x24,
     SOFTRIG_KIND_ORIENT = 0x25,
+    SOFTRIG_KIND_PRESS = 0x26,
     SOFTRIG_KIND_OK = 0x40,
     SOFTRIG_KIND_REFUSED = 0x41,
     SOFTRIG_KIND_STATUS = 0x42,
@@ -174,6 +175,8 @@ enum {
     SOFTRIG_CODES_R32 = 32,
     SOFTRIG_CODES_R33 = 33,
     SOFTRIG_CODES_R34 = 34,
+    SOFTRIG_CODES_R35 = 35,
+    SOFTRIG_CODES_R36 = 36,
     SOFTRIG_CODES_F01 = 101,
     SOFTRIG_CODES_F02 = 102,
     SOFTRIG_CODES_F03 = 103,
@@ -201,7 +204,9 @@ enum {
     SOFTRIG_CODES_F25 = 125,
     SOFTRIG_CODES_F26 = 126,
     SOFTRIG_CODES_F27 = 127,
-    SOFTRIG_CODES_F28 = 128
+    SOFTRIG_CODES_F28 = 128,
+    SOFTRIG_CODES_F29 = 129,
+    SOFTRIG_CODES_F30 = 130
 };
 
 /* Bytes that belong to somebody else. */
@@ -1278,13 +1283,13 @@ static inline int softrig_unpack_start(softrig_start *out, softrig_bytes payload
 /* 0x23 cancel: Ends the running program: all coils off, joints hold, still armed. */
 /* It has no payload. */
 
-/* 0x24 move: Turn joints to an angle on a straight line, then hold them there; the order carries its own end. */
-#define SOFTRIG_MOVE_BYTES 10u
+/* 0x24 move: Bring joints to a position on a straight line, then hold them there; the order carries its own end. */
+#define SOFTRIG_MOVE_BYTES 12u
 typedef struct softrig_move {
     uint32_t joints; /* Bit mask of channels in the order of the profile. */
-    int16_t target_centi; /* Where to. */
+    int16_t target_centi; /* Where to, in hundredths of the joint's unit, which the profile names. */
     uint16_t over_ms; /* How long they are to take. */
-    uint16_t hold_ms; /* Limp again after this long there unless driven anew. */
+    uint32_t hold_ms; /* Limp again after this long there unless driven anew. */
 } softrig_move;
 
 static inline int softrig_pack_move(const softrig_move *in, uint8_t *out, size_t room)
@@ -1294,7 +1299,7 @@ static inline int softrig_pack_move(const softrig_move *in, uint8_t *out, size_t
     softrig_put32(out, in->joints);
     softrig_put16(out + 4, (uint16_t)in->target_centi);
     softrig_put16(out + 6, in->over_ms);
-    softrig_put16(out + 8, in->hold_ms);
+    softrig_put32(out + 8, in->hold_ms);
     return (int)SOFTRIG_MOVE_BYTES;
 }
 
@@ -1305,16 +1310,16 @@ static inline int softrig_unpack_move(softrig_move *out, softrig_bytes payload)
     out->joints = softrig_get32(payload.at);
     out->target_centi = softrig_signed16(softrig_get16(payload.at + 4));
     out->over_ms = softrig_get16(payload.at + 6);
-    out->hold_ms = softrig_get16(payload.at + 8);
+    out->hold_ms = softrig_get32(payload.at + 8);
     return 0;
 }
 
 /* 0x25 orient: Turn the object that both joints grip, by its angle as the camera sees it, then hold. */
-#define SOFTRIG_ORIENT_BYTES 6u
+#define SOFTRIG_ORIENT_BYTES 8u
 typedef struct softrig_orient {
     int16_t target_centideg; /* The object's angle. */
     uint16_t time_ms; /* How long the robot regulates it. */
-    uint16_t hold_ms; /* Both joints limp again after this long unless driven anew. */
+    uint32_t hold_ms; /* Both joints limp again after this long unless driven anew. */
 } softrig_orient;
 
 static inline int softrig_pack_orient(const softrig_orient *in, uint8_t *out, size_t room)
@@ -1323,7 +1328,7 @@ static inline int softrig_pack_orient(const softrig_orient *in, uint8_t *out, si
         return -1;
     softrig_put16(out, (uint16_t)in->target_centideg);
     softrig_put16(out + 2, in->time_ms);
-    softrig_put16(out + 4, in->hold_ms);
+    softrig_put32(out + 4, in->hold_ms);
     return (int)SOFTRIG_ORIENT_BYTES;
 }
 
@@ -1333,7 +1338,38 @@ static inline int softrig_unpack_orient(softrig_orient *out, softrig_bytes paylo
         return -1;
     out->target_centideg = softrig_signed16(softrig_get16(payload.at));
     out->time_ms = softrig_get16(payload.at + 2);
-    out->hold_ms = softrig_get16(payload.at + 4);
+    out->hold_ms = softrig_get32(payload.at + 4);
+    return 0;
+}
+
+/* 0x26 press: Press with a force, by what the load cell reads, then hold the axis where it stands. */
+#define SOFTRIG_PRESS_BYTES 12u
+typedef struct softrig_press {
+    uint16_t target_mn; /* The force, reached on a straight line from the present one. */
+    uint16_t over_ms; /* How long it is to take to reach it. */
+    uint32_t time_ms; /* How long the robot regulates it, that included. */
+    uint32_t hold_ms; /* The joint limp again after this long unless driven anew. */
+} softrig_press;
+
+static inline int softrig_pack_press(const softrig_press *in, uint8_t *out, size_t room)
+{
+    if (room < SOFTRIG_PRESS_BYTES)
+        return -1;
+    softrig_put16(out, in->target_mn);
+    softrig_put16(out + 2, in->over_ms);
+    softrig_put32(out + 4, in->time_ms);
+    softrig_put32(out + 8, in->hold_ms);
+    return (int)SOFTRIG_PRESS_BYTES;
+}
+
+static inline int softrig_unpack_press(softrig_press *out, softrig_bytes payload)
+{
+    if (payload.size != SOFTRIG_PRESS_BYTES)
+        return -1;
+    out->target_mn = softrig_get16(payload.at);
+    out->over_ms = softrig_get16(payload.at + 2);
+    out->time_ms = softrig_get32(payload.at + 4);
+    out->hold_ms = softrig_get32(payload.at + 8);
     return 0;
 }
 

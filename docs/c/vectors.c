@@ -1024,7 +1024,7 @@ static void payload_54(void)
     in.target_centi = -32768;
     in.over_ms = 0u;
     in.hold_ms = 0u;
-    hex(&payload, "00000000008000000000");
+    hex(&payload, "000000000080000000000000");
     check(same(packed.at, softrig_pack_move(&in, packed.at, HELD_MAX), &payload), "move 54");
     check(softrig_unpack_move(&out, view(&payload)) == 0, "move 54");
     check(out.joints == in.joints, "move 54");
@@ -1040,8 +1040,8 @@ static void payload_55(void)
     in.joints = 4294967295u;
     in.target_centi = 32767;
     in.over_ms = 65535u;
-    in.hold_ms = 65535u;
-    hex(&payload, "ffffffffff7fffffffff");
+    in.hold_ms = 4294967295u;
+    hex(&payload, "ffffffffff7fffffffffffff");
     check(same(packed.at, softrig_pack_move(&in, packed.at, HELD_MAX), &payload), "move 55");
     check(softrig_unpack_move(&out, view(&payload)) == 0, "move 55");
     check(out.joints == in.joints, "move 55");
@@ -1057,8 +1057,8 @@ static void payload_56(void)
     in.joints = 3454992675u;
     in.target_centi = 28690;
     in.over_ms = 32913u;
-    in.hold_ms = 57380u;
-    hex(&payload, "2301efcd1270918024e0");
+    in.hold_ms = 2042486820u;
+    hex(&payload, "2301efcd1270918024e0bd79");
     check(same(packed.at, softrig_pack_move(&in, packed.at, HELD_MAX), &payload), "move 56");
     check(softrig_unpack_move(&out, view(&payload)) == 0, "move 56");
     check(out.joints == in.joints, "move 56");
@@ -1074,7 +1074,7 @@ static void payload_57(void)
     in.target_centideg = -32768;
     in.time_ms = 0u;
     in.hold_ms = 0u;
-    hex(&payload, "008000000000");
+    hex(&payload, "0080000000000000");
     check(same(packed.at, softrig_pack_orient(&in, packed.at, HELD_MAX), &payload), "orient 57");
     check(softrig_unpack_orient(&out, view(&payload)) == 0, "orient 57");
     check(out.target_centideg == in.target_centideg, "orient 57");
@@ -1088,8 +1088,8 @@ static void payload_58(void)
     softrig_orient in, out;
     in.target_centideg = 32767;
     in.time_ms = 65535u;
-    in.hold_ms = 65535u;
-    hex(&payload, "ff7fffffffff");
+    in.hold_ms = 4294967295u;
+    hex(&payload, "ff7fffffffffffff");
     check(same(packed.at, softrig_pack_orient(&in, packed.at, HELD_MAX), &payload), "orient 58");
     check(softrig_unpack_orient(&out, view(&payload)) == 0, "orient 58");
     check(out.target_centideg == in.target_centideg, "orient 58");
@@ -1103,8 +1103,8 @@ static void payload_59(void)
     softrig_orient in, out;
     in.target_centideg = -32477;
     in.time_ms = 49224u;
-    in.hold_ms = 61458u;
-    hex(&payload, "238148c012f0");
+    in.hold_ms = 3168727058u;
+    hex(&payload, "238148c012f0debc");
     check(same(packed.at, softrig_pack_orient(&in, packed.at, HELD_MAX), &payload), "orient 59");
     check(softrig_unpack_orient(&out, view(&payload)) == 0, "orient 59");
     check(out.target_centideg == in.target_centideg, "orient 59");
@@ -1115,37 +1115,88 @@ static void payload_59(void)
 static void payload_60(void)
 {
     static held payload, packed;
-    softrig_ok in, out;
-    in.request = 0u;
-    hex(&payload, "00");
-    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 60");
-    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 60");
-    check(out.request == in.request, "ok 60");
+    softrig_press in, out;
+    in.target_mn = 0u;
+    in.over_ms = 0u;
+    in.time_ms = 0u;
+    in.hold_ms = 0u;
+    hex(&payload, "000000000000000000000000");
+    check(same(packed.at, softrig_pack_press(&in, packed.at, HELD_MAX), &payload), "press 60");
+    check(softrig_unpack_press(&out, view(&payload)) == 0, "press 60");
+    check(out.target_mn == in.target_mn, "press 60");
+    check(out.over_ms == in.over_ms, "press 60");
+    check(out.time_ms == in.time_ms, "press 60");
+    check(out.hold_ms == in.hold_ms, "press 60");
 }
 
 static void payload_61(void)
 {
     static held payload, packed;
-    softrig_ok in, out;
-    in.request = 255u;
-    hex(&payload, "ff");
-    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 61");
-    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 61");
-    check(out.request == in.request, "ok 61");
+    softrig_press in, out;
+    in.target_mn = 65535u;
+    in.over_ms = 65535u;
+    in.time_ms = 4294967295u;
+    in.hold_ms = 4294967295u;
+    hex(&payload, "ffffffffffffffffffffffff");
+    check(same(packed.at, softrig_pack_press(&in, packed.at, HELD_MAX), &payload), "press 61");
+    check(softrig_unpack_press(&out, view(&payload)) == 0, "press 61");
+    check(out.target_mn == in.target_mn, "press 61");
+    check(out.over_ms == in.over_ms, "press 61");
+    check(out.time_ms == in.time_ms, "press 61");
+    check(out.hold_ms == in.hold_ms, "press 61");
 }
 
 static void payload_62(void)
 {
     static held payload, packed;
-    softrig_ok in, out;
-    in.request = 35u;
-    hex(&payload, "23");
-    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 62");
-    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 62");
-    check(out.request == in.request, "ok 62");
+    softrig_press in, out;
+    in.target_mn = 291u;
+    in.over_ms = 49224u;
+    in.time_ms = 3168727058u;
+    in.hold_ms = 2042486820u;
+    hex(&payload, "230148c012f0debc24e0bd79");
+    check(same(packed.at, softrig_pack_press(&in, packed.at, HELD_MAX), &payload), "press 62");
+    check(softrig_unpack_press(&out, view(&payload)) == 0, "press 62");
+    check(out.target_mn == in.target_mn, "press 62");
+    check(out.over_ms == in.over_ms, "press 62");
+    check(out.time_ms == in.time_ms, "press 62");
+    check(out.hold_ms == in.hold_ms, "press 62");
 }
 
 static void payload_63(void)
+{
+    static held payload, packed;
+    softrig_ok in, out;
+    in.request = 0u;
+    hex(&payload, "00");
+    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 63");
+    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 63");
+    check(out.request == in.request, "ok 63");
+}
+
+static void payload_64(void)
+{
+    static held payload, packed;
+    softrig_ok in, out;
+    in.request = 255u;
+    hex(&payload, "ff");
+    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 64");
+    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 64");
+    check(out.request == in.request, "ok 64");
+}
+
+static void payload_65(void)
+{
+    static held payload, packed;
+    softrig_ok in, out;
+    in.request = 35u;
+    hex(&payload, "23");
+    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 65");
+    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 65");
+    check(out.request == in.request, "ok 65");
+}
+
+static void payload_66(void)
 {
     static held payload, packed;
     softrig_refused in, out;
@@ -1155,16 +1206,16 @@ static void payload_63(void)
     in.value = -2147483647 - 1;
     in.limit = -2147483647 - 1;
     hex(&payload, "000000000000008000000080");
-    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 63");
-    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 63");
-    check(out.request == in.request, "refused 63");
-    check(out.code == in.code, "refused 63");
-    check(out.channel == in.channel, "refused 63");
-    check(out.value == in.value, "refused 63");
-    check(out.limit == in.limit, "refused 63");
+    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 66");
+    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 66");
+    check(out.request == in.request, "refused 66");
+    check(out.code == in.code, "refused 66");
+    check(out.channel == in.channel, "refused 66");
+    check(out.value == in.value, "refused 66");
+    check(out.limit == in.limit, "refused 66");
 }
 
-static void payload_64(void)
+static void payload_67(void)
 {
     static held payload, packed;
     softrig_refused in, out;
@@ -1174,16 +1225,16 @@ static void payload_64(void)
     in.value = 2147483647;
     in.limit = 2147483647;
     hex(&payload, "ffffffffffffff7fffffff7f");
-    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 64");
-    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 64");
-    check(out.request == in.request, "refused 64");
-    check(out.code == in.code, "refused 64");
-    check(out.channel == in.channel, "refused 64");
-    check(out.value == in.value, "refused 64");
-    check(out.limit == in.limit, "refused 64");
+    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 67");
+    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 67");
+    check(out.request == in.request, "refused 67");
+    check(out.code == in.code, "refused 67");
+    check(out.channel == in.channel, "refused 67");
+    check(out.value == in.value, "refused 67");
+    check(out.limit == in.limit, "refused 67");
 }
 
-static void payload_65(void)
+static void payload_68(void)
 {
     static held payload, packed;
     softrig_refused in, out;
@@ -1193,16 +1244,16 @@ static void payload_65(void)
     in.value = 1021243410;
     in.limit = -104996828;
     hex(&payload, "2391802412f0de3c24e0bdf9");
-    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 65");
-    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 65");
-    check(out.request == in.request, "refused 65");
-    check(out.code == in.code, "refused 65");
-    check(out.channel == in.channel, "refused 65");
-    check(out.value == in.value, "refused 65");
-    check(out.limit == in.limit, "refused 65");
+    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 68");
+    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 68");
+    check(out.request == in.request, "refused 68");
+    check(out.code == in.code, "refused 68");
+    check(out.channel == in.channel, "refused 68");
+    check(out.value == in.value, "refused 68");
+    check(out.limit == in.limit, "refused 68");
 }
 
-static void payload_66(void)
+static void payload_69(void)
 {
     static held payload, packed;
     softrig_status in, out;
@@ -1224,28 +1275,28 @@ static void payload_66(void)
     in.repeated = 0u;
     in.overruns = 0u;
     hex(&payload, "0000000000000000000000000000000000000000008000800080000000000000000000");
-    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 66");
-    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 66");
-    check(out.request == in.request, "status 66");
-    check(out.state == in.state, "status 66");
-    check(out.code == in.code, "status 66");
-    check(out.uptime_ms == in.uptime_ms, "status 66");
-    check(out.lease_ms == in.lease_ms, "status 66");
-    check(out.step == in.step, "status 66");
-    check(out.coils == in.coils, "status 66");
-    check(out.supply_mv == in.supply_mv, "status 66");
-    check(out.current_ma == in.current_ma, "status 66");
-    check(out.board_decidegc == in.board_decidegc, "status 66");
-    check(out.roll_decideg == in.roll_decideg, "status 66");
-    check(out.pitch_decideg == in.pitch_decideg, "status 66");
-    check(out.down == in.down, "status 66");
-    check(out.dropped == in.dropped, "status 66");
-    check(out.forged == in.forged, "status 66");
-    check(out.repeated == in.repeated, "status 66");
-    check(out.overruns == in.overruns, "status 66");
+    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 69");
+    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 69");
+    check(out.request == in.request, "status 69");
+    check(out.state == in.state, "status 69");
+    check(out.code == in.code, "status 69");
+    check(out.uptime_ms == in.uptime_ms, "status 69");
+    check(out.lease_ms == in.lease_ms, "status 69");
+    check(out.step == in.step, "status 69");
+    check(out.coils == in.coils, "status 69");
+    check(out.supply_mv == in.supply_mv, "status 69");
+    check(out.current_ma == in.current_ma, "status 69");
+    check(out.board_decidegc == in.board_decidegc, "status 69");
+    check(out.roll_decideg == in.roll_decideg, "status 69");
+    check(out.pitch_decideg == in.pitch_decideg, "status 69");
+    check(out.down == in.down, "status 69");
+    check(out.dropped == in.dropped, "status 69");
+    check(out.forged == in.forged, "status 69");
+    check(out.repeated == in.repeated, "status 69");
+    check(out.overruns == in.overruns, "status 69");
 }
 
-static void payload_67(void)
+static void payload_70(void)
 {
     static held payload, packed;
     softrig_status in, out;
@@ -1267,28 +1318,28 @@ static void payload_67(void)
     in.repeated = 65535u;
     in.overruns = 65535u;
     hex(&payload, "ffffffffffffffffffffffffffffffffffffffffff7fff7fff7fffffffffffffffffff");
-    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 67");
-    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 67");
-    check(out.request == in.request, "status 67");
-    check(out.state == in.state, "status 67");
-    check(out.code == in.code, "status 67");
-    check(out.uptime_ms == in.uptime_ms, "status 67");
-    check(out.lease_ms == in.lease_ms, "status 67");
-    check(out.step == in.step, "status 67");
-    check(out.coils == in.coils, "status 67");
-    check(out.supply_mv == in.supply_mv, "status 67");
-    check(out.current_ma == in.current_ma, "status 67");
-    check(out.board_decidegc == in.board_decidegc, "status 67");
-    check(out.roll_decideg == in.roll_decideg, "status 67");
-    check(out.pitch_decideg == in.pitch_decideg, "status 67");
-    check(out.down == in.down, "status 67");
-    check(out.dropped == in.dropped, "status 67");
-    check(out.forged == in.forged, "status 67");
-    check(out.repeated == in.repeated, "status 67");
-    check(out.overruns == in.overruns, "status 67");
+    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 70");
+    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 70");
+    check(out.request == in.request, "status 70");
+    check(out.state == in.state, "status 70");
+    check(out.code == in.code, "status 70");
+    check(out.uptime_ms == in.uptime_ms, "status 70");
+    check(out.lease_ms == in.lease_ms, "status 70");
+    check(out.step == in.step, "status 70");
+    check(out.coils == in.coils, "status 70");
+    check(out.supply_mv == in.supply_mv, "status 70");
+    check(out.current_ma == in.current_ma, "status 70");
+    check(out.board_decidegc == in.board_decidegc, "status 70");
+    check(out.roll_decideg == in.roll_decideg, "status 70");
+    check(out.pitch_decideg == in.pitch_decideg, "status 70");
+    check(out.down == in.down, "status 70");
+    check(out.dropped == in.dropped, "status 70");
+    check(out.forged == in.forged, "status 70");
+    check(out.repeated == in.repeated, "status 70");
+    check(out.overruns == in.overruns, "status 70");
 }
 
-static void payload_68(void)
+static void payload_71(void)
 {
     static held payload, packed;
     softrig_status in, out;
@@ -1310,28 +1361,28 @@ static void payload_68(void)
     in.repeated = 32913u;
     in.overruns = 57380u;
     hex(&payload, "239148c012f0debc24e0230148c07bf3918024e02381484012709148c012f0918024e0");
-    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 68");
-    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 68");
-    check(out.request == in.request, "status 68");
-    check(out.state == in.state, "status 68");
-    check(out.code == in.code, "status 68");
-    check(out.uptime_ms == in.uptime_ms, "status 68");
-    check(out.lease_ms == in.lease_ms, "status 68");
-    check(out.step == in.step, "status 68");
-    check(out.coils == in.coils, "status 68");
-    check(out.supply_mv == in.supply_mv, "status 68");
-    check(out.current_ma == in.current_ma, "status 68");
-    check(out.board_decidegc == in.board_decidegc, "status 68");
-    check(out.roll_decideg == in.roll_decideg, "status 68");
-    check(out.pitch_decideg == in.pitch_decideg, "status 68");
-    check(out.down == in.down, "status 68");
-    check(out.dropped == in.dropped, "status 68");
-    check(out.forged == in.forged, "status 68");
-    check(out.repeated == in.repeated, "status 68");
-    check(out.overruns == in.overruns, "status 68");
+    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 71");
+    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 71");
+    check(out.request == in.request, "status 71");
+    check(out.state == in.state, "status 71");
+    check(out.code == in.code, "status 71");
+    check(out.uptime_ms == in.uptime_ms, "status 71");
+    check(out.lease_ms == in.lease_ms, "status 71");
+    check(out.step == in.step, "status 71");
+    check(out.coils == in.coils, "status 71");
+    check(out.supply_mv == in.supply_mv, "status 71");
+    check(out.current_ma == in.current_ma, "status 71");
+    check(out.board_decidegc == in.board_decidegc, "status 71");
+    check(out.roll_decideg == in.roll_decideg, "status 71");
+    check(out.pitch_decideg == in.pitch_decideg, "status 71");
+    check(out.down == in.down, "status 71");
+    check(out.dropped == in.dropped, "status 71");
+    check(out.forged == in.forged, "status 71");
+    check(out.repeated == in.repeated, "status 71");
+    check(out.overruns == in.overruns, "status 71");
 }
 
-static void payload_69(void)
+static void payload_72(void)
 {
     static held bytes, payload, packed;
     softrig_faults in, out;
@@ -1340,15 +1391,15 @@ static void payload_69(void)
     in.count = 0u;
     in.records = view(hex(&bytes, ""));
     hex(&payload, "000000000000");
-    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 69");
-    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 69");
-    check(out.request == in.request, "faults 69");
-    check(out.start == in.start, "faults 69");
-    check(out.count == in.count, "faults 69");
-    check(same_view(out.records, &bytes), "faults 69");
+    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 72");
+    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 72");
+    check(out.request == in.request, "faults 72");
+    check(out.start == in.start, "faults 72");
+    check(out.count == in.count, "faults 72");
+    check(same_view(out.records, &bytes), "faults 72");
 }
 
-static void payload_70(void)
+static void payload_73(void)
 {
     static held bytes, payload, packed;
     softrig_faults in, out;
@@ -1357,15 +1408,15 @@ static void payload_70(void)
     in.count = 255u;
     in.records = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 70");
-    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 70");
-    check(out.request == in.request, "faults 70");
-    check(out.start == in.start, "faults 70");
-    check(out.count == in.count, "faults 70");
-    check(same_view(out.records, &bytes), "faults 70");
+    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 73");
+    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 73");
+    check(out.request == in.request, "faults 73");
+    check(out.start == in.start, "faults 73");
+    check(out.count == in.count, "faults 73");
+    check(same_view(out.records, &bytes), "faults 73");
 }
 
-static void payload_71(void)
+static void payload_74(void)
 {
     static held bytes, payload, packed;
     softrig_faults in, out;
@@ -1374,15 +1425,15 @@ static void payload_71(void)
     in.count = 35u;
     in.records = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "239180f7e62300017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 71");
-    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 71");
-    check(out.request == in.request, "faults 71");
-    check(out.start == in.start, "faults 71");
-    check(out.count == in.count, "faults 71");
-    check(same_view(out.records, &bytes), "faults 71");
+    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 74");
+    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 74");
+    check(out.request == in.request, "faults 74");
+    check(out.start == in.start, "faults 74");
+    check(out.count == in.count, "faults 74");
+    check(same_view(out.records, &bytes), "faults 74");
 }
 
-static void payload_72(void)
+static void payload_75(void)
 {
     static held bytes, payload, packed;
     softrig_settings in, out;
@@ -1392,16 +1443,16 @@ static void payload_72(void)
     in.board_offset_decidegc = -32768;
     in.resistances = view(hex(&bytes, ""));
     hex(&payload, "0000000080");
-    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 72");
-    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 72");
-    check(out.request == in.request, "settings 72");
-    check(out.source == in.source, "settings 72");
-    check(out.node == in.node, "settings 72");
-    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 72");
-    check(same_view(out.resistances, &bytes), "settings 72");
+    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 75");
+    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 75");
+    check(out.request == in.request, "settings 75");
+    check(out.source == in.source, "settings 75");
+    check(out.node == in.node, "settings 75");
+    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 75");
+    check(same_view(out.resistances, &bytes), "settings 75");
 }
 
-static void payload_73(void)
+static void payload_76(void)
 {
     static held bytes, payload, packed;
     softrig_settings in, out;
@@ -1411,16 +1462,16 @@ static void payload_73(void)
     in.board_offset_decidegc = 32767;
     in.resistances = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "ffffffff7fffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 73");
-    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 73");
-    check(out.request == in.request, "settings 73");
-    check(out.source == in.source, "settings 73");
-    check(out.node == in.node, "settings 73");
-    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 73");
-    check(same_view(out.resistances, &bytes), "settings 73");
+    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 76");
+    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 76");
+    check(out.request == in.request, "settings 76");
+    check(out.source == in.source, "settings 76");
+    check(out.node == in.node, "settings 76");
+    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 76");
+    check(same_view(out.resistances, &bytes), "settings 76");
 }
 
-static void payload_74(void)
+static void payload_77(void)
 {
     static held bytes, payload, packed;
     softrig_settings in, out;
@@ -1430,55 +1481,55 @@ static void payload_74(void)
     in.board_offset_decidegc = 24612;
     in.resistances = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "239148246000017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 74");
-    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 74");
-    check(out.request == in.request, "settings 74");
-    check(out.source == in.source, "settings 74");
-    check(out.node == in.node, "settings 74");
-    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 74");
-    check(same_view(out.resistances, &bytes), "settings 74");
+    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 77");
+    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 77");
+    check(out.request == in.request, "settings 77");
+    check(out.source == in.source, "settings 77");
+    check(out.node == in.node, "settings 77");
+    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 77");
+    check(same_view(out.resistances, &bytes), "settings 77");
 }
 
-static void payload_75(void)
+static void payload_78(void)
 {
     static held bytes, payload, packed;
     softrig_coils in, out;
     in.request = 0u;
     in.channels = view(hex(&bytes, ""));
     hex(&payload, "00");
-    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 75");
-    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 75");
-    check(out.request == in.request, "coils 75");
-    check(same_view(out.channels, &bytes), "coils 75");
+    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 78");
+    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 78");
+    check(out.request == in.request, "coils 78");
+    check(same_view(out.channels, &bytes), "coils 78");
 }
 
-static void payload_76(void)
+static void payload_79(void)
 {
     static held bytes, payload, packed;
     softrig_coils in, out;
     in.request = 255u;
     in.channels = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 76");
-    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 76");
-    check(out.request == in.request, "coils 76");
-    check(same_view(out.channels, &bytes), "coils 76");
+    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 79");
+    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 79");
+    check(out.request == in.request, "coils 79");
+    check(same_view(out.channels, &bytes), "coils 79");
 }
 
-static void payload_77(void)
+static void payload_80(void)
 {
     static held bytes, payload, packed;
     softrig_coils in, out;
     in.request = 35u;
     in.channels = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "2300017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 77");
-    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 77");
-    check(out.request == in.request, "coils 77");
-    check(same_view(out.channels, &bytes), "coils 77");
+    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 80");
+    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 80");
+    check(out.request == in.request, "coils 80");
+    check(same_view(out.channels, &bytes), "coils 80");
 }
 
-static void payload_78(void)
+static void payload_81(void)
 {
     static held payload, packed;
     softrig_event in, out;
@@ -1489,17 +1540,17 @@ static void payload_78(void)
     in.value = -2147483647 - 1;
     in.now_ms = 0u;
     hex(&payload, "0000000000000000008000000000");
-    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 78");
-    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 78");
-    check(out.event == in.event, "event 78");
-    check(out.code == in.code, "event 78");
-    check(out.step == in.step, "event 78");
-    check(out.channel == in.channel, "event 78");
-    check(out.value == in.value, "event 78");
-    check(out.now_ms == in.now_ms, "event 78");
+    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 81");
+    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 81");
+    check(out.event == in.event, "event 81");
+    check(out.code == in.code, "event 81");
+    check(out.step == in.step, "event 81");
+    check(out.channel == in.channel, "event 81");
+    check(out.value == in.value, "event 81");
+    check(out.now_ms == in.now_ms, "event 81");
 }
 
-static void payload_79(void)
+static void payload_82(void)
 {
     static held payload, packed;
     softrig_event in, out;
@@ -1510,17 +1561,17 @@ static void payload_79(void)
     in.value = 2147483647;
     in.now_ms = 4294967295u;
     hex(&payload, "ffffffffffffffffff7fffffffff");
-    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 79");
-    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 79");
-    check(out.event == in.event, "event 79");
-    check(out.code == in.code, "event 79");
-    check(out.step == in.step, "event 79");
-    check(out.channel == in.channel, "event 79");
-    check(out.value == in.value, "event 79");
-    check(out.now_ms == in.now_ms, "event 79");
+    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 82");
+    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 82");
+    check(out.event == in.event, "event 82");
+    check(out.code == in.code, "event 82");
+    check(out.step == in.step, "event 82");
+    check(out.channel == in.channel, "event 82");
+    check(out.value == in.value, "event 82");
+    check(out.now_ms == in.now_ms, "event 82");
 }
 
-static void payload_80(void)
+static void payload_83(void)
 {
     static held payload, packed;
     softrig_event in, out;
@@ -1531,17 +1582,17 @@ static void payload_80(void)
     in.value = 1727496337;
     in.now_ms = 3454992675u;
     hex(&payload, "23918024e0239180f7662301efcd");
-    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 80");
-    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 80");
-    check(out.event == in.event, "event 80");
-    check(out.code == in.code, "event 80");
-    check(out.step == in.step, "event 80");
-    check(out.channel == in.channel, "event 80");
-    check(out.value == in.value, "event 80");
-    check(out.now_ms == in.now_ms, "event 80");
+    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 83");
+    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 83");
+    check(out.event == in.event, "event 83");
+    check(out.code == in.code, "event 83");
+    check(out.step == in.step, "event 83");
+    check(out.channel == in.channel, "event 83");
+    check(out.value == in.value, "event 83");
+    check(out.now_ms == in.now_ms, "event 83");
 }
 
-static void payload_81(void)
+static void payload_84(void)
 {
     static held bytes, payload, packed;
     softrig_telemetry in, out;
@@ -1551,16 +1602,16 @@ static void payload_81(void)
     in.now_ms = 0u;
     in.values = view(hex(&bytes, ""));
     hex(&payload, "00000000000000");
-    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 81");
-    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 81");
-    check(out.slot == in.slot, "telemetry 81");
-    check(out.form == in.form, "telemetry 81");
-    check(out.count == in.count, "telemetry 81");
-    check(out.now_ms == in.now_ms, "telemetry 81");
-    check(same_view(out.values, &bytes), "telemetry 81");
+    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 84");
+    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 84");
+    check(out.slot == in.slot, "telemetry 84");
+    check(out.form == in.form, "telemetry 84");
+    check(out.count == in.count, "telemetry 84");
+    check(out.now_ms == in.now_ms, "telemetry 84");
+    check(same_view(out.values, &bytes), "telemetry 84");
 }
 
-static void payload_82(void)
+static void payload_85(void)
 {
     static held bytes, payload, packed;
     softrig_telemetry in, out;
@@ -1570,16 +1621,16 @@ static void payload_82(void)
     in.now_ms = 4294967295u;
     in.values = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "04ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 82");
-    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 82");
-    check(out.slot == in.slot, "telemetry 82");
-    check(out.form == in.form, "telemetry 82");
-    check(out.count == in.count, "telemetry 82");
-    check(out.now_ms == in.now_ms, "telemetry 82");
-    check(same_view(out.values, &bytes), "telemetry 82");
+    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 85");
+    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 85");
+    check(out.slot == in.slot, "telemetry 85");
+    check(out.form == in.form, "telemetry 85");
+    check(out.count == in.count, "telemetry 85");
+    check(out.now_ms == in.now_ms, "telemetry 85");
+    check(same_view(out.values, &bytes), "telemetry 85");
 }
 
-static void payload_83(void)
+static void payload_86(void)
 {
     static held bytes, payload, packed;
     softrig_telemetry in, out;
@@ -1589,16 +1640,16 @@ static void payload_83(void)
     in.now_ms = 2042486820u;
     in.values = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "00914824e0bd7900017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 83");
-    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 83");
-    check(out.slot == in.slot, "telemetry 83");
-    check(out.form == in.form, "telemetry 83");
-    check(out.count == in.count, "telemetry 83");
-    check(out.now_ms == in.now_ms, "telemetry 83");
-    check(same_view(out.values, &bytes), "telemetry 83");
+    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 86");
+    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 86");
+    check(out.slot == in.slot, "telemetry 86");
+    check(out.form == in.form, "telemetry 86");
+    check(out.count == in.count, "telemetry 86");
+    check(out.now_ms == in.now_ms, "telemetry 86");
+    check(same_view(out.values, &bytes), "telemetry 86");
 }
 
-static void payload_84(void)
+static void payload_87(void)
 {
     static held payload, packed;
     softrig_beacon in, out;
@@ -1608,16 +1659,16 @@ static void payload_84(void)
     in.supply_mv = 0u;
     in.current_ma = 0u;
     hex(&payload, "0000000000000000");
-    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 84");
-    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 84");
-    check(out.state == in.state, "beacon 84");
-    check(out.code == in.code, "beacon 84");
-    check(out.step == in.step, "beacon 84");
-    check(out.supply_mv == in.supply_mv, "beacon 84");
-    check(out.current_ma == in.current_ma, "beacon 84");
+    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 87");
+    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 87");
+    check(out.state == in.state, "beacon 87");
+    check(out.code == in.code, "beacon 87");
+    check(out.step == in.step, "beacon 87");
+    check(out.supply_mv == in.supply_mv, "beacon 87");
+    check(out.current_ma == in.current_ma, "beacon 87");
 }
 
-static void payload_85(void)
+static void payload_88(void)
 {
     static held payload, packed;
     softrig_beacon in, out;
@@ -1627,16 +1678,16 @@ static void payload_85(void)
     in.supply_mv = 65535u;
     in.current_ma = 65535u;
     hex(&payload, "ffffffffffffffff");
-    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 85");
-    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 85");
-    check(out.state == in.state, "beacon 85");
-    check(out.code == in.code, "beacon 85");
-    check(out.step == in.step, "beacon 85");
-    check(out.supply_mv == in.supply_mv, "beacon 85");
-    check(out.current_ma == in.current_ma, "beacon 85");
+    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 88");
+    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 88");
+    check(out.state == in.state, "beacon 88");
+    check(out.code == in.code, "beacon 88");
+    check(out.step == in.step, "beacon 88");
+    check(out.supply_mv == in.supply_mv, "beacon 88");
+    check(out.current_ma == in.current_ma, "beacon 88");
 }
 
-static void payload_86(void)
+static void payload_89(void)
 {
     static held payload, packed;
     softrig_beacon in, out;
@@ -1646,16 +1697,16 @@ static void payload_86(void)
     in.supply_mv = 61458u;
     in.current_ma = 32913u;
     hex(&payload, "239148c012f09180");
-    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 86");
-    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 86");
-    check(out.state == in.state, "beacon 86");
-    check(out.code == in.code, "beacon 86");
-    check(out.step == in.step, "beacon 86");
-    check(out.supply_mv == in.supply_mv, "beacon 86");
-    check(out.current_ma == in.current_ma, "beacon 86");
+    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 89");
+    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 89");
+    check(out.state == in.state, "beacon 89");
+    check(out.code == in.code, "beacon 89");
+    check(out.step == in.step, "beacon 89");
+    check(out.supply_mv == in.supply_mv, "beacon 89");
+    check(out.current_ma == in.current_ma, "beacon 89");
 }
 
-static void payload_87(void)
+static void payload_90(void)
 {
     static held payload, packed;
     softrig_beacon_coils in, out;
@@ -1665,16 +1716,16 @@ static void payload_87(void)
     in.temperature_a_decidegc = -32768;
     in.temperature_b_decidegc = -32768;
     hex(&payload, "00000000800080");
-    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 87");
-    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 87");
-    check(out.group == in.group, "beacon_coils 87");
-    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 87");
-    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 87");
-    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 87");
-    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 87");
+    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 90");
+    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 90");
+    check(out.group == in.group, "beacon_coils 90");
+    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 90");
+    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 90");
+    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 90");
+    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 90");
 }
 
-static void payload_88(void)
+static void payload_91(void)
 {
     static held payload, packed;
     softrig_beacon_coils in, out;
@@ -1684,16 +1735,16 @@ static void payload_88(void)
     in.temperature_a_decidegc = 32767;
     in.temperature_b_decidegc = 32767;
     hex(&payload, "0f6464ff7fff7f");
-    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 88");
-    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 88");
-    check(out.group == in.group, "beacon_coils 88");
-    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 88");
-    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 88");
-    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 88");
-    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 88");
+    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 91");
+    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 91");
+    check(out.group == in.group, "beacon_coils 91");
+    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 91");
+    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 91");
+    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 91");
+    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 91");
 }
 
-static void payload_89(void)
+static void payload_92(void)
 {
     static held payload, packed;
     softrig_beacon_coils in, out;
@@ -1703,16 +1754,16 @@ static void payload_89(void)
     in.temperature_a_decidegc = 24612;
     in.temperature_b_decidegc = -32477;
     hex(&payload, "031e4124602381");
-    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 89");
-    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 89");
-    check(out.group == in.group, "beacon_coils 89");
-    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 89");
-    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 89");
-    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 89");
-    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 89");
+    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 92");
+    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 92");
+    check(out.group == in.group, "beacon_coils 92");
+    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 92");
+    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 92");
+    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 92");
+    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 92");
 }
 
-static void payload_90(void)
+static void payload_93(void)
 {
     static held payload, packed;
     softrig_clock in, out;
@@ -1720,14 +1771,14 @@ static void payload_90(void)
     in.received_ms = 0u;
     in.sent_ms = 0u;
     hex(&payload, "000000000000000000000000");
-    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 90");
-    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 90");
-    check(out.host_us == in.host_us, "clock 90");
-    check(out.received_ms == in.received_ms, "clock 90");
-    check(out.sent_ms == in.sent_ms, "clock 90");
+    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 93");
+    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 93");
+    check(out.host_us == in.host_us, "clock 93");
+    check(out.received_ms == in.received_ms, "clock 93");
+    check(out.sent_ms == in.sent_ms, "clock 93");
 }
 
-static void payload_91(void)
+static void payload_94(void)
 {
     static held payload, packed;
     softrig_clock in, out;
@@ -1735,14 +1786,14 @@ static void payload_91(void)
     in.received_ms = 4294967295u;
     in.sent_ms = 4294967295u;
     hex(&payload, "ffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 91");
-    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 91");
-    check(out.host_us == in.host_us, "clock 91");
-    check(out.received_ms == in.received_ms, "clock 91");
-    check(out.sent_ms == in.sent_ms, "clock 91");
+    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 94");
+    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 94");
+    check(out.host_us == in.host_us, "clock 94");
+    check(out.received_ms == in.received_ms, "clock 94");
+    check(out.sent_ms == in.sent_ms, "clock 94");
 }
 
-static void payload_92(void)
+static void payload_95(void)
 {
     static held payload, packed;
     softrig_clock in, out;
@@ -1750,11 +1801,11 @@ static void payload_92(void)
     in.received_ms = 3168727058u;
     in.sent_ms = 2042486820u;
     hex(&payload, "2301efcd12f0debc24e0bd79");
-    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 92");
-    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 92");
-    check(out.host_us == in.host_us, "clock 92");
-    check(out.received_ms == in.received_ms, "clock 92");
-    check(out.sent_ms == in.sent_ms, "clock 92");
+    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 95");
+    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 95");
+    check(out.host_us == in.host_us, "clock 95");
+    check(out.received_ms == in.received_ms, "clock 95");
+    check(out.sent_ms == in.sent_ms, "clock 95");
 }
 
 int main(void)
@@ -1852,6 +1903,9 @@ int main(void)
     payload_90();
     payload_91();
     payload_92();
+    payload_93();
+    payload_94();
+    payload_95();
     { static const whole told = {0, 1, 0, 0, 0, 0u, 0u, 0, "", "239180f7e62301efcd12f0debc24e0bd79", "20010000239180f7e62301efcd12f0debc24e0bd7992d7a9ee", "0320010116239180f7e62301efcd12f0debc24e0bd7992d7a9ee00"}; frame(&told, "hello"); }
     { static const whole told = {0, 2, 0, 0, 0, 0u, 0u, 1, "", "2301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000", "200200002301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f500032ae7a7c", "03200201352301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7905017f80ff0553544f500532ae7a7c00"}; frame(&told, "identity"); }
     { static const whole told = {2, 2, 0, 0, 9, 0u, 0u, 1, "", "2301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000", "22020000092301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000435cac63", "0322020136092301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7905017f80ff0553544f5005435cac6300"}; frame(&told, "identity"); }
