@@ -20,11 +20,11 @@ import numpy as np
 
 from hil_sim.bodies import pressview
 from hil_sim.bodies.backlash import follow
-from hil_sim.bodies.pressnumbers import press_of, ratios, shape_of
+from hil_sim.bodies.pressnumbers import cells_of, press_of, ratios, shape_of
 from hil_sim.bodies.screw import Screw
 from hil_sim.physics.block.material import BlockError
 from hil_sim.physics.block.press import Pressed, surface_of
-from hil_sim.physics.block.stress import Cells, von_mises
+from hil_sim.physics.block.stress import von_mises
 from hil_sim.physics.compiled import Array
 from hil_sim.robots.file import RobotFile
 from hil_sim.soundness import OutOfModel
@@ -44,7 +44,7 @@ class PressPlant:
         self.press = press_of(self.numbers)
         self.state = self.press.start()
         self.surface = surface_of(self.press.block.mesh)
-        self.cells = Cells(self.press.block.mesh, list(self.numbers.centres.values()), self.numbers.side)
+        self.cells = cells_of(self.numbers, self.press.block.mesh)
         self.screw = Screw(self.numbers.screw)
         self.commanded_mm: float | None = None
         self.force_peak_n = self.von_mises_peak_pa = self.strain_peak = 0.0

@@ -7,9 +7,10 @@ from hil_sim.bodies.screw import ScrewNumbers
 from hil_sim.meshfile import read_mesh
 from hil_sim.physics.block.block import Block, hold
 from hil_sim.physics.block.indenters import Cylinder, Indenter, Polygon, Punch
-from hil_sim.physics.block.material import Material
+from hil_sim.physics.block.material import BlockError, Material
 from hil_sim.physics.block.mesh import Mesh, mesh_of, rectangle
 from hil_sim.physics.block.press import Axis, Press
+from hil_sim.physics.block.stress import Cells
 
 REACH = 0.010  # of the axis, up and down [m]
 ROUNDING = 1e-9
@@ -68,6 +69,16 @@ def press_of(numbers: PressNumbers, material: Material | None = None) -> Press:
     axis = Axis(at, least=-(REACH + numbers.backlash) * (1.0 + ROUNDING), most=REACH * (1.0 + ROUNDING))
     block = Block(mesh, material or numbers.material, numbers.thickness)
     return Press(block, hold((bottom, 0.0, 0.0)), indenter_of(numbers), axis)
+
+
+def cells_of(numbers: PressNumbers, mesh: Mesh) -> Cells:
+    """Return the force cells; BlockError, which names it, for one that is not all inside the block."""
+    for label, centre in numbers.centres.items():
+        try:
+            Cells(mesh, [centre], numbers.side)
+        except BlockError as error:
+            raise BlockError(f"force cell {label}: {error}") from error
+    return Cells(mesh, list(numbers.centres.values()), numbers.side)
 
 
 def shape_of(numbers: PressNumbers) -> float | None:

@@ -53,7 +53,7 @@ class Check:
         sections = {"": {key: value for key, value in data.items() if not isinstance(value, dict)}}
         sections |= {key: value for key, value in data.items() if isinstance(value, dict)}
         self.kind = kind_of(sections)
-        power, meshed = BATTERY if "battery" in sections else BENCH, "mesh" in sections.get("press", {})
+        power, meshed = BATTERY if "battery" in sections else BENCH, bool(given(sections, "press.mesh"))
         features = features_of(self.kind, power, meshed)
         self.rows = keys_of(features)
         self._texts = texts_of(features)
@@ -68,6 +68,8 @@ class Check:
         self._ranges()
         self._constraints(overrides)
         self._pairs()
+        if self.choices.get("press.indenter") == "polygon" and "corners_mm" not in sections.get("press", {}):
+            self._say("[press]", "indenter polygon needs corners_mm = [[x, y], ...] in [press], x from the axis")
 
     def _say(self, name: str, what: str) -> None:
         """Note a mistake at the line of section.key, else of its section, else of the file."""
@@ -93,7 +95,7 @@ class Check:
         here = {row.only for row in self._all}
         everywhere: list[Key | Text] = [*KEYS, *TEXTS]
         only = [row.only for row in everywhere if name in (row.section, row.name) and row.only not in here]
-        return f": it belongs to a robot with {'' if only[0].endswith('s') else 'a '}{only[0]}" if only else ""
+        return f": it belongs to a robot with {'' if many(only[0]) else 'a '}{only[0]}" if only else ""
 
     def _number(self, section: str, key: str, value: object) -> None:
         name = f"{section}.{key}" if section else key
@@ -186,14 +188,18 @@ class Check:
         for pair in PAIRS:
             none, other = sorted(pair, key=self._value)
             if self._value(none) == 0.0 < self._value(other):
-                self._say(other, f"{other} is {self._value(other):g} and {none} 0: a branch has both, or neither")
+                what = f"{other} is {self._value(other):g} and {none} 0: a branch has both, or neither"
+                self._blame(self.entries.get(none, self.entries[other]), what)
 
     def _value(self, name: str) -> float:
         return self.entries[name].value if name in self.entries else 0.0
 
     def _wrong(self, entry: Entry, allowed: str) -> None:
         """Note that a number is none that a robot may have, in the file or from the address."""
-        what = f"{entry.name} is {entry.value:g}, it must be {allowed}"
+        self._blame(entry, f"{entry.name} is {entry.value:g}, it must be {allowed}")
+
+    def _blame(self, entry: Entry, what: str) -> None:
+        """Note a mistake at a number of the file, or at the one that the address has put in its place."""
         if entry.source == FROM_ADDRESS:
             self.mistakes.append(f"set={entry.name}: {what}")
         else:
@@ -239,6 +245,11 @@ def near(word: str, known: Collection[str]) -> str:
     """Return "; did you mean X?" if one of the known words is like it."""
     match = get_close_matches(word, sorted(known), 1)
     return f"; did you mean {match[0]}?" if match else ""
+
+
+def many(word: str) -> bool:
+    """Return whether this is a word for several things."""
+    return word.endswith("s") and not word.endswith("ss")
 
 
 def is_number(value: object) -> bool:

@@ -14,7 +14,7 @@ RING, SPHERE, FINGERS, PRESS = "ring", "sphere", "fingers", "press"  # kinds of 
 SHELL, COILS, SERVOS = "shell", "coils", "servos"  # what robots of some kinds have
 CAMERA, SERVOS, LOAD = "camera", "servos", "load cell"
 BENCH, BATTERY = "bench supply", "battery"  # kinds of power
-GRID = "block of cells"  # not of a mesh from a file
+GRID = "block without a mesh"  # of its own, from a file
 KINDS: dict[str, tuple[str, ...]] = {
     RING: (RING, SHELL, COILS),
     SPHERE: (SPHERE, SHELL, COILS),

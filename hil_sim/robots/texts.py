@@ -169,8 +169,6 @@ def _pressed(sections: Sections) -> Mistakes:
     corners = press.get("corners_mm")
     if not (isinstance(corners, list) and all(map(_is_place, corners))) and corners is not None:
         yield "press.corners_mm", "corners_mm: write them as [[x, y], ...], around the axis"
-    elif corners is None and press.get("indenter") == "polygon":
-        yield "press.indenter", "indenter polygon needs corners_mm = [[x, y], ...], around the axis"
     if not (isinstance(centres, dict) and all(map(_is_place, centres.values()))):
         yield "cells.centres_mm", "centres_mm: write them as { C1 = [x, y], ... }, from the block's lower left corner"
     elif len(centres) > CELLS_MAX:
