@@ -39,6 +39,7 @@ $(READY): pyproject.toml
 	@$(BIN)/softrig info --robot sim:circular >/dev/null
 	@$(BIN)/softrig info --robot sim:sphere-b >/dev/null
 	@$(BIN)/softrig info --robot sim:fingers-experiment >/dev/null
+	@$(BIN)/softrig info --robot sim:press >/dev/null
 	@touch $@
 
 test: $(READY)
