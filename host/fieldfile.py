@@ -25,6 +25,7 @@ from host.fields import Mesh, Slice
 from host.recording import Recording
 
 Arrays = dict[str, NDArray[Any]]
+NEAR_S = 0.2  # beyond the first and last slice
 
 
 class Field(NamedTuple):
@@ -46,8 +47,7 @@ def write_slice(recording: Recording, at_s: float, names: Sequence[str], path: P
     """Write the slice nearest to that time since the program began; BadRequest when the record has none there."""
     mesh, slices = _seen(recording)
     times = np.array([recording.seconds(taken.host_ms) for taken in slices])
-    spacing = float(np.diff(times).max(initial=0.0)) or 1.0
-    if not times[0] - spacing < at_s < times[-1] + spacing:
+    if not times[0] - NEAR_S <= at_s <= times[-1] + NEAR_S:
         span = f"from {times[0]:.2f} to {times[-1]:.2f} s"
         raise BadRequest(f"there is no slice at {at_s:g} s: the record has {len(slices)}, {span}")
     nearest = int(np.abs(times - at_s).argmin())

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 Row = dict[str, Any]
 Floats = NDArray[np.float32]
+STILL_MM, STILL_KPA = 1e-5, 1e-5  # changes that nobody would see in a picture
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,6 +52,12 @@ def slice_of(fields: Row, t_s: float, host_ms: int) -> Slice:
     """Return an observer's fields at this instant."""
     names = ("displacement_mm", "stress_kpa", "von_mises_kpa", "strain")
     return Slice(t_s, host_ms, *(np.array(fields[name], np.float32) for name in names))
+
+
+def same(one: Slice, other: Slice) -> bool:
+    """Return whether nothing has changed from one slice to the other."""
+    moved, stress = one.displacement_mm - other.displacement_mm, one.stress_kpa - other.stress_kpa
+    return bool(np.abs(moved).max() < STILL_MM and np.abs(stress).max() < STILL_KPA)
 
 
 def mesh_row(mesh: Mesh, host_ms: int) -> Row:

@@ -1,7 +1,7 @@
 """Takes slices of a body from an observer that sees inside it, at even times and where a program begins and ends.
 
-A slice is dear (100 kB and more), so it is taken five times a second at first and more seldom later, see `Rhythm`.
-numpy is imported with the first one only.
+A slice is dear (70 kB of a log), so it is taken five times a second at first and more seldom later, see `Rhythm`, and
+one in which nothing has changed is kept at the ends only. numpy is imported with the first one.
 
     slicing = Slicing(observer, keep)
     slicing.look(host_ms)                   # as often as time passes
@@ -56,30 +56,32 @@ class Slicing:
         self._observer: Any = observer if hasattr(observer, "fields") else None
         self._keep = keep
         self._mesh: Mesh | None = None
-        self._taken_s: float | None = None
+        self._last: Slice | None = None
         self._rhythm = Rhythm()
 
     def look(self, host_ms: int) -> None:
         """Take a slice if one is due."""
         if self._observer is not None and self._rhythm.due(host_ms):
-            self._take(host_ms)
+            self._take(host_ms, anyway=False)
 
     def take(self, host_ms: int) -> None:
         """Take a slice now, and count the next ones from it."""
         if self._observer is not None:
             self._rhythm.restart(host_ms)
-            self._take(host_ms)
+            self._take(host_ms, anyway=True)
 
-    def _take(self, host_ms: int) -> None:
-        """Take a slice, unless no time has passed for the body since the last one."""
+    def _take(self, host_ms: int, anyway: bool) -> None:
+        """Take a slice if time has passed for the body since the last one, and if it changed, or anyway."""
         t_s = self._observer.snapshot()["t_s"]
-        if t_s == self._taken_s:
+        if self._last is not None and t_s == self._last.t_s:
             return
         fields = self._observer.fields()
         if fields is None:
             self._observer = None
             return
-        from host.fields import mesh_of, slice_of  # noqa: PLC0415  (numpy, which most runs do not need)
+        from host.fields import mesh_of, same, slice_of  # noqa: PLC0415  (numpy, which most runs do not need)
 
-        self._mesh, self._taken_s = self._mesh or mesh_of(fields), t_s
-        self._keep(self._mesh, slice_of(fields, t_s, host_ms))
+        self._mesh, taken = self._mesh or mesh_of(fields), slice_of(fields, t_s, host_ms)
+        if self._last is None or anyway or not same(self._last, taken):
+            self._last = taken
+            self._keep(self._mesh, taken)

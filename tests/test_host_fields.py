@@ -1,6 +1,7 @@
 """What an observer sees inside a body: taken at even times, kept in the recording and the log, and given back."""
 
 import json
+from math import inf
 
 import numpy as np
 import pytest
@@ -31,8 +32,8 @@ def fields(shift_mm=0.25):
 class Watcher:
     """An observer whose time goes on when it is told so, and that sees inside the body or not."""
 
-    def __init__(self, sees=True):
-        self.t_s, self.sees, self.asked = 0.0, sees, 0
+    def __init__(self, sees=True, moves_s=inf):
+        self.t_s, self.sees, self.moves_s, self.asked = 0.0, sees, moves_s, 0
 
     def snapshot(self):
         return {"t_s": self.t_s, "coils": {}}
@@ -42,7 +43,7 @@ class Watcher:
 
     def fields(self):
         self.asked += 1
-        return fields(self.t_s) if self.sees else None
+        return fields(min(self.t_s, self.moves_s)) if self.sees else None
 
 
 def event(name, host_ms):
@@ -80,6 +81,12 @@ def test_an_observer_that_sees_nothing_inside_is_asked_once():
 
     assert watcher.asked == 1
     assert (recording.mesh, recording.slices) == (None, [])
+
+
+def test_a_body_that_keeps_its_shape_is_kept_at_the_ends_only():
+    recording = kept(Watcher(moves_s=0.4))
+
+    assert [taken.host_ms for taken in recording.slices] == [0, 120, 320, 520, 1003, 1103]
 
 
 def test_who_keeps_no_scenes_keeps_no_slices():
