@@ -13,7 +13,7 @@ from hil_sim.physics.block.stress import at_nodes as at_nodes_of
 from host.errors import BadRequest
 from host.view import draw_dents, draw_film, draw_run, draw_stresses
 from host.view.dents import dents_figure
-from host.view.meshes import deformed, edges_of, trails
+from host.view.meshes import deformed, edges_of, lowest, trails
 from host.view.pressing import press_of, slices_of
 from host.view.pressplot import body, telling
 from host.view.stresses import KINDS, at_nodes, colours_of, levels_of, stresses_figure
@@ -95,6 +95,17 @@ def test_figure_15_says_its_scale_and_how_large_the_dent_is(pressed, tmp_path):
     assert any("to scale, displacements as large as they are" in text for text in written)
     assert {f"{dents[104]:.2f} mm", f"{dents[156]:.2f} mm", "20 mm"} <= set(written)
     assert f"push, 2.00 s: depth 4.00 mm, {pressed.scenes[40]['force_n']:.2f} N" in written
+
+
+def test_the_dent_of_a_flat_punch_is_measured_in_its_middle(pressed):
+    below = np.flatnonzero(np.abs(pressed.mesh.points_mm[:, 0] - 40) < 11)
+    top = below[pressed.mesh.points_mm[below, 1] == 40]
+    moved = np.zeros_like(pressed.slices[0].displacement_mm)
+    moved[top] = [0.0, -2.0]
+
+    node = lowest(pressed.mesh, replace(pressed.slices[0], displacement_mm=moved))
+
+    assert pressed.mesh.points_mm[node] == pytest.approx([40, 40])
 
 
 def test_stress_at_nodes_is_the_mean_of_the_triangles_around_by_area(pressed):

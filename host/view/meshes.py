@@ -23,6 +23,7 @@ Edges = NDArray[np.int64]
 FLESH, TOOL = "#f3e9d8", "#c3cad3"  # the block, and what presses on it
 EDGE_MM, HEAD_MM, BELOW_MM = 2.0, 13.0, 3.0  # around the block; above it for what presses
 RULER_MM = 20.0
+ALIKE_MM = 1e-3
 
 
 def deformed(mesh: Mesh, each: Slice) -> Points:
@@ -103,9 +104,16 @@ def draw_ruler(axes: Axes, box: Box) -> None:
     axes.text(x + RULER_MM / 2, y - 1.2, f"{RULER_MM:g} mm", ha="center", va="top", fontsize=6.5, color=GROUND)
 
 
+def lowest(mesh: Mesh, each: Slice) -> int:
+    """Return the node that is pressed in most; of several alike, below a flat punch, the one in their middle."""
+    down = -each.displacement_mm[:, 1]
+    alike = np.flatnonzero(down >= down.max() - ALIKE_MM)
+    return int(alike[np.argsort(mesh.points_mm[alike, 0], kind="stable")][len(alike) // 2])
+
+
 def draw_dent(axes: Axes, mesh: Mesh, each: Slice) -> None:
     """Draw how deep the block is pressed in where it is most, from the surface as it was."""
-    deepest = int(np.argmin(each.displacement_mm[:, 1]))
+    deepest = lowest(mesh, each)
     x, before = np.asarray(mesh.points_mm, dtype=float)[deepest]
     low = float(deformed(mesh, each)[deepest, 1])
     for y in (before, low):
