@@ -17,13 +17,15 @@ from host.profile import Parts
 from host.recording import Recording, Scene
 from host.records import Event, Record, Telemetry
 from host.robot import ENDS, Robot
-from host.slicing import Slicing
+from host.slicing import EVERY_MS, Slicing
 from protocol import causes, codes, program
 
 if TYPE_CHECKING:
     from host.fields import Mesh, Slice
 
 TELEMETRY_MS = 50
+FINE_MS = 10  # from what a press does to what a material is: `softrig fit`
+FINE, FINE_SLOT = ("load_mn", "joint_centi", "commanded_centi"), 1
 PATIENCE_MS = 10_000  # with a line that breaks while the program runs
 COOL_MS = 2 * TELEMETRY_MS  # after the end, so that the record ends with every coil off
 
@@ -38,13 +40,15 @@ class Progress(Protocol):
 class Keeper:
     """Keeps what passes during a run: in a Recording, and in a log if there is one; with `scenes` also what is seen."""
 
-    def __init__(self, log: LogWriter | None = None, observer: Any = None, scenes: bool = True) -> None:
+    def __init__(
+        self, log: LogWriter | None = None, observer: Any = None, scenes: bool = True, slice_ms: int = EVERY_MS
+    ) -> None:
         self.recording = Recording(())
         self._log = log
         self._observer = observer
         self._scenes = scenes
         self._attention = Attention()
-        self._slicing = Slicing(observer if scenes else None, self._keep_slice)
+        self._slicing = Slicing(observer if scenes else None, self._keep_slice, slice_ms)
         if scenes and hasattr(observer, "watch"):
             observer.watch(self.glance)
 
@@ -139,14 +143,22 @@ class IfLost:
 
 
 def run(
-    robot: Robot, code: bytes, progress: Progress, without: tuple[str, ...] = (), if_lost: IfLost | None = None
+    robot: Robot,
+    code: bytes,
+    progress: Progress,
+    without: tuple[str, ...] = (),
+    if_lost: IfLost | None = None,
+    finely: bool = False,
 ) -> Ending:
     """Run a program (header and code) on a robot that is connected, and watch it to its end.
 
-    Coils of `without` are known to be broken: whatever the program orders, they stay cold.
+    Coils of `without` are known to be broken: whatever the program orders, they stay cold. With `finely` a robot with a
+    load cell tells force and depth a hundred times a second, beside its telemetry.
     """
     upload(robot, code, progress)
     robot.subscribe(TELEMETRY_MS)
+    if finely and robot.profile.load is not None:
+        robot.subscribe(FINE_MS, FINE, slot=FINE_SLOT)
     robot.arm(without=without)
     progress("self-test", len(robot.profile.labels))
     robot.start()

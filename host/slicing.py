@@ -22,8 +22,8 @@ MOST = 256  # slices of one rhythm; the next has half its speed, so that hours o
 class Rhythm:
     """Says when the next slice is due, so that slices lie at even times since the first."""
 
-    def __init__(self) -> None:
-        self._every_ms, self._count = EVERY_MS, 0
+    def __init__(self, every_ms: int = EVERY_MS) -> None:
+        self._every_ms, self._count = every_ms, 0
         self._due_ms: int | None = None
 
     def restart(self, host_ms: int) -> None:
@@ -52,12 +52,12 @@ class Keeps(Protocol):
 class Slicing:
     """Takes slices for `keep`; nothing of an observer that has no fields."""
 
-    def __init__(self, observer: Any, keep: Keeps) -> None:
+    def __init__(self, observer: Any, keep: Keeps, every_ms: int = EVERY_MS) -> None:
         self._observer: Any = observer if hasattr(observer, "fields") else None
         self._keep = keep
         self._mesh: Mesh | None = None
         self._last: Slice | None = None
-        self._rhythm = Rhythm()
+        self._rhythm = Rhythm(every_ms)
 
     def look(self, host_ms: int) -> None:
         """Take a slice if one is due."""

@@ -17,7 +17,7 @@ from host.gait.script import load
 from host.link import open_link
 from host.recording import Recording
 from host.robot import Robot
-from host.run import Keeper, run
+from host.run import TELEMETRY_MS, Keeper, run
 from host.view import (
     check_pictures,
     draw_dents,
@@ -97,7 +97,7 @@ def recorded(wanted: Run, robot: str | None) -> Recording:
     tree = load(script_path(wanted.script))
     address = place(tree, robot) + (wanted.settings if robot is None else "")
     link = open_link(address)
-    keeper = Keeper(observer=link.observer)
+    keeper = Keeper(observer=link.observer, slice_ms=TELEMETRY_MS)
     with Robot(link, keeper, given_key()) as face:
         face.connect()
         keeper.know(face.profile.parts)
