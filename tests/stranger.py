@@ -84,7 +84,7 @@ class Words:
         for number, name, fields in re.findall(r"^(\d+) (\w+)(.*)$", text, re.MULTILINE):
             self.kinds[name] = int(number)
             self.fields[name] = re.findall(r"(\w+):(\w)", re.sub(r"\[.*?\]", "", fields))
-        for number, name, letter, each in re.findall(r"^var (\d+) (\w+):(\w)([*+@]?)", text, re.MULTILINE):
+        for number, name, letter, each in re.findall(r"^var (\d+) (\w+):(\w)([*+@!#]?)", text, re.MULTILINE):
             self.variables[name] = int(number), letter, each
         self.names = {kind: name for name, kind in self.kinds.items()}
 
@@ -101,9 +101,13 @@ class Words:
             layout = layout[:-1] + f"{len(payload) - struct.calcsize(layout[:-1])}s"
         return dict(zip((field for field, _ in self.fields[name]), struct.unpack(layout, payload), strict=True))
 
-    def unpack_record(self, values: bytes, names: list[str], coils: int, joints: int = 0, cameras: int = 0) -> dict:
+    def unpack_record(self, values: bytes, names: list[str], profile: dict) -> dict:
         """Return the variables in a record of telemetry; one of which there may be several, or none, is a list."""
-        counts = {"": 1, "*": coils, "+": joints, "@": cameras}
+        channels = [channel["kind"] for channel in profile["channels"]]
+        counts = {
+            "": 1, "*": channels.count("sma"), "+": channels.count("servo"), "@": int("camera" in profile),
+            "!": int("load" in profile), "#": len(profile.get("cells", ())),
+        }  # fmt: skip
         kinds = [self.variables[name] for name in names]
         layout = "<" + "".join(letter * counts[each] for _, letter, each in kinds)
         flat = iter(struct.unpack(layout, bytes(byte ^ 0x55 for byte in values)))

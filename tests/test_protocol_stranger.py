@@ -81,7 +81,16 @@ def robot(closed):
 
 @pytest.fixture
 def fingers():
-    link = open_link("sim:fingers")
+    yield from at_a_bench("sim:fingers")
+
+
+@pytest.fixture
+def press():
+    yield from at_a_bench("sim:press")
+
+
+def at_a_bench(address):
+    link = open_link(address)
     with Pty() as pty, closing(OnBench(link.bench, pty)) as robot:
         robot.open()
         yield robot
@@ -159,7 +168,7 @@ def test_records_of_telemetry_come_at_their_period(robot):
     names = ["state", "supply_mv", "coil_decidegc"]
     robot.subscribe(0, 50, names)
     first, second = robot.wait("telemetry", slot=0), robot.wait("telemetry", slot=0)
-    record = robot.words.unpack_record(second["values"], names, coils=8)
+    record = robot.words.unpack_record(second["values"], names, robot.limits)
 
     assert (second["count"], second["now_ms"] - first["now_ms"]) == (first["count"] + 1, 50)
     assert record["state"] == 1
@@ -176,12 +185,29 @@ def test_joints_move_hold_and_tell_of_themselves_and_of_the_object(fingers):
     fingers.pass_s(0.6)
 
     values = [values for name, values in fingers.heard if name == "telemetry"][-1]["values"]
-    record = fingers.words.unpack_record(values, names, coils=0, joints=2, cameras=1)
+    record = fingers.words.unpack_record(values, names, fingers.limits)
 
     assert record["joint_centi"] == pytest.approx([300, -300], abs=40)
     assert record["commanded_centi"] == [300, -300]
     assert (record["coil_decidegc"], record["state"]) == ([], 2)
     assert record["object_centideg"] == pytest.approx([0], abs=20)
+
+
+def test_a_press_presses_and_tells_what_it_and_the_block_feel(press):
+    names = ["load_mn", "cell_pa", "joint_centi", "coil_decidegc", "object_centideg"]
+    press.subscribe(0, 50, names)
+    press.arm()
+    press.order("press", target_mn=2000, over_ms=1000, time_ms=4000, hold_ms=1000)
+    press.pass_s(3.5)
+
+    values = [values for name, values in press.heard if name == "telemetry"][-1]["values"]
+    record = press.words.unpack_record(values, names, press.limits)
+
+    assert record["load_mn"] == pytest.approx([2000], abs=100)
+    assert len(record["cell_pa"]) == 6
+    assert max(record["cell_pa"]) > 500  # 2 N on a strip 40 mm thick and some 20 mm wide
+    assert record["joint_centi"][0] > 20
+    assert (record["coil_decidegc"], record["object_centideg"]) == ([], [])
 
 
 def test_a_program_runs_to_its_end(robot):
