@@ -34,7 +34,7 @@ class PressPlant:
     """Axis, indenter and block of one robot, at rest at time 0; a function of the commands and nothing else."""
 
     def __init__(self, robot: RobotFile) -> None:
-        """Build and factor the block; BlockError for numbers that cannot be."""
+        """Build the block and try a step; BlockError for numbers that cannot be."""
         assert robot.press is not None
         self.labels: list[str] = []
         self.temperature, self.resistance = np.zeros(0), np.zeros(0)
@@ -53,7 +53,7 @@ class PressPlant:
         self._now_us = 0
         self._step_us = round(1e6 * self.numbers.dt)
         self._felt: tuple[Pressed, Array] | None = None
-        self.press.block.stiffness(self.press.supports, self.numbers.dt)
+        self.press.advance(self.state, self.numbers.dt, depth=0.0)  # what it needs is compiled and factored here
 
     @property
     def t_s(self) -> float:
@@ -117,21 +117,32 @@ class PressPlant:
 
     def _press(self) -> None:
         """Advance the block by one of its steps."""
-        numbers, before = self.numbers, self.state
-        at = 1e-3 * self.screw.at_mm
+        before, at = self.state, 1e-3 * self.screw.at_mm
         if self._untouched(at):
             self.state = before._replace(depth=at)
             return
         try:
-            self.state = follow(self.press, before, numbers.dt, at, numbers.backlash, numbers.tool_mass * numbers.g)
+            self.state = self._driven(at)
         except BlockError as error:
             told = f"the press left what its model is valid for at {self.t_s:.2f} s, {error}"
             raise OutOfModel(told) from error
-        if self.state.glue is not None and self.state.force < -numbers.pull_off:
+        if self.state.glue is not None and self.state.force < -self.numbers.pull_off:
             self.state = self.press.release(self.state)._replace(depth=self.state.depth)
         if before.active.any() and not self.touching:
             self.lost_contact_s = self.t_s
         self._remember()
+
+    def _driven(self, at: float) -> Pressed:
+        """Return press and block after a step to there [m], or to where the servo has the force to get."""
+        numbers, before = self.numbers, self.state
+        there = follow(self.press, before, numbers.dt, at, numbers.backlash, numbers.tool_mass * numbers.g)
+        if there.depth <= before.depth or there.force <= numbers.screw.stall_n:
+            return there
+        there = self.press.advance(before, numbers.dt, force=numbers.screw.stall_n)
+        if there.depth < before.depth:  # the screw does not give way
+            there = self.press.advance(before, numbers.dt, depth=before.depth)
+        self.screw.at_mm = 1e3 * (there.depth + numbers.backlash)
+        return there
 
     def _untouched(self, at: float) -> bool:
         """Return whether nothing has happened to the block yet, nor does so with the screw there [m]."""
