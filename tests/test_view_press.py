@@ -44,6 +44,12 @@ def test_the_four_instants_are_push_end_of_hold_release_and_long_after(pressed):
     assert [each.t_s for each in slices_of(pressed)] == pytest.approx([2.0, 5.0, 5.2, 7.8])
 
 
+def test_a_slice_taken_just_after_a_scene_is_of_that_instant(pressed):
+    late = replace(pressed, slices=[replace(each, host_ms=each.host_ms + 3) for each in pressed.slices])
+
+    assert [each.t_s for each in slices_of(late)] == pytest.approx([2.0, 5.0, 5.2, 7.8])
+
+
 def test_of_two_presses_the_stronger_is_shown_until_the_next_one_begins():
     twice = recorded_press(TWICE)
 

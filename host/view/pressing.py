@@ -19,6 +19,7 @@ from host.view.instants import Numbers
 
 NAMES = ("push", "end of the hold", "just after release", "long after")
 FULL = 0.99  # of the greatest force: the push is over
+APART_MS = 10  # scene and slice of one instant
 RISEN_MM = 0.05  # above where it was deepest: the hold is over
 
 
@@ -54,8 +55,10 @@ def slices_of(recording: Recording) -> list[Slice]:
         raise BadRequest("this figure needs the fields of a block: run it on the bench, --robot sim:press")
     press, seen = press_of(recording), [scene["host_ms"] for scene in recording.scenes]
     times = np.array([each.host_ms for each in recording.slices])
-    before = [int(np.searchsorted(times, seen[i], "right")) - 1 for i in (press.push, press.hold, press.after)]
-    freed = int(np.searchsorted(times, seen[press.freed]))
+    before = [
+        int(np.searchsorted(times, seen[i] + APART_MS, "right")) - 1 for i in (press.push, press.hold, press.after)
+    ]
+    freed = int(np.searchsorted(times, seen[press.freed] - APART_MS))
     push, hold, after = (max(0, i) for i in before)
     return [recording.slices[i] for i in (push, hold, min(freed, after), after)]
 
