@@ -22,7 +22,10 @@ from hil_sim.worlds.micropython import interpreter
 ROOT = Path(__file__).parents[1]
 BUDGET = ROOT / "benchmarks" / "budget.json"
 ROBOTS = ROOT / "firmware" / "robots"
-STATES = {"idle": "sphere-b", "armed": "sphere-b", "firing": "sphere-b", "running": "sphere-b", "turning": "fingers"}
+STATES = {
+    "idle": "sphere-b", "armed": "sphere-b", "firing": "sphere-b", "running": "sphere-b", "turning": "fingers",
+    "pressing": "press",
+}  # fmt: skip
 STEPS = 640
 BAND = 0.05
 

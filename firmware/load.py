@@ -11,7 +11,7 @@ from protocol import codes
 
 OVER_READS = 3  # in a row that a force must be too great before it is believed
 BROKEN_READS = 10  # and that a reading must be at the end of the range
-CELLS_PER_STEP = 3
+CELLS_PER_STEP = 2
 
 
 class Load:

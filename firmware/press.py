@@ -41,9 +41,8 @@ class Press:
     def begin(self, target_mn: int, over_ms: int, time_ms: int, hold_ms: int, now_ms: int) -> None:
         """Regulate the force for so long, then hold the axis; or raise Refused. A limp one begins where it stands."""
         joints, servo = self._joints, self._servo
-        for longest_ms in (time_ms, hold_ms):
-            if longest_ms > servo.hold_max_ms:
-                raise Refused(codes.HOLD_LIMIT, joints.first, longest_ms, servo.hold_max_ms)
+        if time_ms > servo.hold_max_ms or hold_ms > servo.hold_max_ms:
+            raise Refused(codes.HOLD_LIMIT, joints.first, max(time_ms, hold_ms), servo.hold_max_ms)
         if target_mn > self._most_mn:
             raise Refused(codes.FORCE_LIMIT, joints.first, target_mn, self._most_mn)
         if not joints.on_mask & self.mask:

@@ -130,12 +130,15 @@ class Servo:
 
 
 class Converter:
-    """Two currents, and two joints where their servos were sent last."""
+    """Currents, joints where their servos were sent last, and what presses the harder the further they went."""
 
     def counts(self, channel):
-        if channel < 2:
-            return 200
-        return 410 + (WIDTHS[channel - 2] - 500_000) // 1000 * 3276 // 2000
+        for place in range(len(profile.joints)):
+            if channel == profile.joints[place].current:
+                return 200
+            if channel == profile.joints[place].position:
+                return 410 + (WIDTHS[place] - 500_000) // 1000 * 3276 // 2000
+        return 819 + max(0, WIDTHS[0] - 1_500_000) // 400 + channel
 
 
 class Camera:
@@ -272,8 +275,28 @@ def turning():
     return b"".join(ops)
 
 
+def pressing():
+    """Return a program that presses and asks for force and cells in every way."""
+    hard = program.Condition(program.FORCE, program.ANY, program.ABOVE, 15_000, 0)
+    deep = program.Condition(program.POSITION, program.ANY, program.ABOVE, 200, 0b1)
+    felt = program.Condition(program.PRESSURE, program.ALL, program.ABOVE, 4000, 0b111111)
+    ops = (
+        program.guard(hard), program.step(1), program.move(1, 20, 300), program.wait(felt, 500, program.CONTINUE),
+        program.delay(100), program.step(2), program.press(6000, 500, 1200), program.wait(deep, 900, program.CONTINUE),
+        program.delay(700), program.press(0, 200, 70_000), program.delay(300), program.move(1, -10, 1000),
+        program.halt(),
+    )  # fmt: skip
+    return b"".join(ops)
+
+
 def driving(profile):
     """Return (time_ms, message, fields) of what drives the robot at once, mistakes included."""
+    if profile.press:
+        return [
+            (190, messages.PRESS, {"target_mn": 18_001, "over_ms": 10, "time_ms": 10, "hold_ms": 10}),
+            (200, messages.PRESS, {"target_mn": 4000, "over_ms": 50, "time_ms": 80, "hold_ms": 40}),
+            (2510, messages.PRESS, {"target_mn": 3000, "over_ms": 0, "time_ms": 700, "hold_ms": 600_000}),
+        ]
     if profile.joints:
         return [
             (30, messages.MOVE, {"joints": 1, "target_centi": 0, "over_ms": 10, "hold_ms": 10}),
@@ -293,7 +316,8 @@ def driving(profile):
 def orders(profile):
     """Return (time_ms, message, fields) of a whole session, mistakes included."""
     crc = profile.crc
-    code = turning() if profile.joints else rolling() if profile.imu_address else script()
+    driven = pressing() if profile.press else turning()
+    code = driven if profile.joints else rolling() if profile.imu_address else script()
     found = driving(profile)
     found += [
         (0, messages.HELLO, {"version": 2, "session": SESSION, "attach": 0, "nonce_a": 0, "nonce_b": 0}),

@@ -1,8 +1,8 @@
 """So many control steps in some states, for a counter of instructions (benchmarks/step_budget.py, under MicroPython).
 
-Arguments: the profile's path, then pairs of a state (idle, armed, firing, running; turning of a robot with joints) and
-how many steps. The core runs on its own drivers; the bus gives back what was written, a current as if the one coil
-under test were whole, and a new frame of the camera at every look.
+Arguments: the profile's path, then pairs of a state (idle, armed, firing, running; turning of a robot with joints,
+pressing of a press) and how many steps. The core runs on its own drivers; the bus gives back what was written, a
+current as if the one coil under test were whole, and a new frame of the camera at every look.
 """
 
 import sys
@@ -23,7 +23,7 @@ CAMERA = 0x33
 
 
 class Wire:
-    """A pin, the pulses on it, and a bus with a converter that reads the middle."""
+    """A pin, the pulses on it, and a bus with a converter."""
 
     def freq(self, hz):
         """Take a rate."""
@@ -35,9 +35,8 @@ class Wire:
         """Take a level."""
 
     def write_readinto(self, sent, came):
-        """Give back half of the reference of an angle, little of a current."""
-        came[2] = 0
-        came[1] = 8 if sent[1] & 0x80 else 0
+        """Give back half of the reference of every third and fourth input, little of the others."""
+        came[1], came[2] = (8, 0) if sent[1] & 0x80 else (3, 232) if sent[1] & 0x40 else (0, 100)
 
 
 class Bus:
@@ -109,7 +108,7 @@ class Table:
 
     def adc(self):
         """Return a driver."""
-        return Mcp3208(Wire(), Wire())
+        return Mcp3208(Wire(), Wire(), Wire())
 
     def camera(self, address):
         """Return a driver."""
@@ -158,6 +157,9 @@ def enter(core, state):
         core.limbs.move(0b01, 250, 100, 60_000, core.now_ms)
         core.limbs.move(0b10, -250, 100, 60_000, core.now_ms)
         core.limbs.turn(100, 60_000, 0, core.now_ms)
+    if state == "pressing":
+        core.profile.servo.astray_ms = 60_000
+        core.limbs.push(5000, 1000, 60_000, 0, core.now_ms)
     core.link.begin(core.link.decoder.dictionary_crc, 0)  # a host has acknowledged what it was told
     core.link.heard_ms = core.now_ms
 

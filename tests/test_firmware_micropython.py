@@ -25,9 +25,9 @@ def printed(interpreter, robot, *arguments):
     return done.stdout.splitlines()
 
 
-@pytest.fixture(scope="module", params=["circular", "sphere-a", "fingers"])
+@pytest.fixture(scope="module", params=["circular", "sphere-a", "fingers", "press"])
 def robot(request):
-    """A robot of coils, one with an attitude sensor, one of joints with a camera."""
+    """A robot of coils, one with an attitude sensor, one of joints with a camera, and a press."""
     return request.param
 
 
@@ -43,7 +43,7 @@ def test_both_interpreters_send_the_same_bytes_and_set_the_same_duties(here, rob
 
 def test_the_trial_looks_at_orders_programs_faults_and_telemetry(here, robot):
     kinds = {line.split()[1] for line in here if line[0].isdigit()}
-    driven = {"pulse", "limp"} if robot == "fingers" else {"set", "off"}
+    driven = {"pulse", "limp"} if robot in ("fingers", "press") else {"set", "off"}
 
     assert kinds == {*driven, "power", "wait", "hasten", "average", "sent"}
     assert len([line for line in here if f" {max(driven)} " in line]) > 10
