@@ -34,6 +34,7 @@ CHUNK_MS = 1000
 NS_PER_MS = 1_000_000
 
 NUMBER, TEXT, MAYBE = {"type": "number"}, {"type": "string"}, {"type": ["number", "null"]}
+BOOLEAN, OBJECT = {"type": "boolean"}, {"type": "object"}
 BY_LABEL = {"type": "object", "additionalProperties": NUMBER}
 PACKED = {"type": "string", "contentEncoding": "base64"}
 MAYBE_BY_LABEL = {"type": "object", "additionalProperties": MAYBE}
@@ -85,11 +86,11 @@ TOPICS: dict[str, dict[str, Any]] = {
         "t_s": NUMBER,
         "hub": {"type": "array", "items": NUMBER},
         "nodes": COORDINATES,
-        "coils": {"type": "object"},
-        "energy_j": {"type": "object"},
-        "fingers": {"type": "object"},
-        "object": {"type": "object"},
-        "observed": {"type": "object"},
+        **dict.fromkeys(("coils", "energy_j", "fingers", "object", "block", "indenter", "cells", "observed"), OBJECT),
+        **dict.fromkeys(("depth_mm", "axis_mm", "force_n", "current_a"), NUMBER),
+        **dict.fromkeys(("touching", "limp"), BOOLEAN),
+        "commanded_mm": MAYBE,
+        "surface_mm": COORDINATES,
     },
     "mesh": {"host_ms": NUMBER, "points_mm": PACKED, "triangles": PACKED},
     "fields": {"host_ms": NUMBER, "t_s": NUMBER, "displacement_mm": PACKED, "stress_kpa": PACKED},

@@ -19,9 +19,10 @@ from host.recording import Recording
 from host.records import Event
 from host.robot import ENDS
 from host.run import Ending
-from protocol import causes
+from protocol import causes, program
 
 Fields = dict[str, Any]
+PRESS = program.NAMES[program.PRESS]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +55,7 @@ def report(ending: Ending | None, recording: Recording, facts: Facts) -> Fields:
         "address": facts.address,
         **{name: facts.info[name] for name in ("robot", "firmware", "protocol", "dictionary", "session")},
         "duration_s": _duration_s(recording),
-        **driven(recording, facts.compiled.profile),
+        **_driven(recording, facts.compiled),
         "faults": [fault(event, recording, facts.compiled) for event in recording.events if event.code],
         "link": facts.statistics,
         "interruptions": [interruption(each, recording) for each in facts.interruptions],
@@ -66,6 +67,15 @@ def report(ending: Ending | None, recording: Recording, facts: Facts) -> Fields:
         fields["observed"] = _rounded(seen)
     took = facts.took
     fields["wall"] = {"time_s": round(took.wall_s, 3), "real_time_factor": round(took.line_s / took.wall_s, 1)}
+    return fields
+
+
+def _driven(recording: Recording, compiled: Compiled) -> Fields:
+    """Return the fields about coils, joints and cells, with the greatest force that the program asks for."""
+    fields = driven(recording, compiled.profile)
+    if "force" in fields:
+        ops = program.disassemble(compiled.code)
+        fields["force"]["asked_n"] = max((op[2] / 1000 for op in ops if op[1] == PRESS), default=None)
     return fields
 
 
