@@ -33,10 +33,19 @@ MISTAKES = [
     ('kind = "press"', 'kind = "pres"', "kind 'pres' is none of fingers, press"),
     ('labels = ["P"]', 'labels = ["P", "Q"]', 'labels: write them as ["P"]'),
     ('labels = ["P"]', "labels = 1", 'labels: write them as ["P"]'),
-    ("corners_mm = [[-15, 10],", "corners_mm = [[-15],", "corners_mm: write them as [[x, y], ...], around the axis"),
+    ("corners_mm = [[-15, 10],", "corners_mm = [[-15],", "corners_mm: write them as [[x, y], ...], x from the axis"),
     ("corners_mm = ", "mesh = 3 # ", "mesh: write it as mesh ="),
-    ("C1 = [40, 30]", "C1 = 40", "centres_mm: write them as { C1 = [x, y], ... }, from the block's lower left corner"),
-    ("centres_mm = { ", f"centres_mm = {{ {''.join(f'D{i} = [9, 9], ' for i in range(9))}", "15 cells, the converters"),
+    (
+        "C1 = [50, 75]",
+        "C1 = 40",
+        "centres_percent: write them as { C1 = [x, y], ... }, of the block's width and height",
+    ),
+    (" C6 = [75, 37.5] }", f"{','.join(f' D{i} = [9, 9]' for i in range(9))} }}", "14 cells, the converters have 13"),
+    (
+        "[cells]\n",
+        "[cells]\ncentres_mm = {}\n",
+        "[cells] needs centres_percent or centres_mm, and has centres_percent an",
+    ),
     ("pins = { P = 8 }", "pins = { P = 11 }", "pins: P on pin 11, the board has servos on 8, 9, 10"),
     ("pins = { P = 8 }", "pins = { R = 8 }", "pins: one pin for each of P, as in P = 8"),
     (
@@ -64,7 +73,7 @@ def test_its_sizes_are_in_si_units():
 
     assert [press.width, press.height, press.thickness, press.R, press.w] == [0.080, 0.040, 0.040, 0.015, 0.020]
     assert [press.columns, press.rows, press.dt, press.side, press.at] == [64, 32, 0.010, 0.005, None]
-    assert press.centres["C5"] == (0.020, 0.015)
+    assert (press.centres["C5"], press.relative) == ((0.25, 0.375), True)
     assert (press.screw.stall_a, press.screw.idle_a, press.backlash) == (1.5, 0.010, 0.0)
 
 
@@ -151,8 +160,8 @@ def test_a_polygon_without_corners_is_told_also_from_an_address(tmp_path):
 
 @pytest.mark.parametrize(
     ("right", "wrong", "told"),
-    [("pins = { P = 8 }", "pins = { P = 9 }", "P"), ("C6 = [60, 15]", "D6 = [60, 15]", "D6 C6"),
-     (", C6 = [60, 15]", "", "load C6")],
+    [("pins = { P = 8 }", "pins = { P = 9 }", "P"), ("C6 = [75, 37.5]", "D6 = [75, 37.5]", "D6 C6"),
+     (", C6 = [75, 37.5]", "", "load C6")],
 )  # fmt: skip
 def test_what_is_wired_otherwise_than_the_profile_says_is_told(right, wrong, told, tmp_path):
     with pytest.raises(RobotFileError, match=rf"mine and its profile .*press.json differ in labels, .*: {told}$"):

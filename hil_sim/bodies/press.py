@@ -20,7 +20,7 @@ import numpy as np
 
 from hil_sim.bodies import pressview
 from hil_sim.bodies.backlash import follow
-from hil_sim.bodies.pressnumbers import cells_of, press_of, ratios, shape_of
+from hil_sim.bodies.pressnumbers import cells_at, places_of, press_of, ratios, shape_of
 from hil_sim.bodies.screw import Screw
 from hil_sim.physics.block.material import BlockError
 from hil_sim.physics.block.press import Pressed, surface_of
@@ -44,7 +44,8 @@ class PressPlant:
         self.press = press_of(self.numbers)
         self.state = self.press.start()
         self.surface = surface_of(self.press.block.mesh)
-        self.cells = cells_of(self.numbers, self.press.block.mesh)
+        self.places = places_of(self.numbers, self.press.block.mesh)
+        self.cells = cells_at(self.places, self.numbers.side, self.press.block.mesh)
         self.screw = Screw(self.numbers.screw)
         self.commanded_mm: float | None = None
         self.force_peak_n = self.von_mises_peak_pa = self.strain_peak = 0.0
@@ -167,7 +168,7 @@ class PressPlant:
             "dent_mm": 1e3 * max(0.0, -float(self.state.block.u[self.surface, 1].min())),
             "von_mises_peak_kpa": 1e-3 * self.von_mises_peak_pa,
             "strain_peak_percent": 100.0 * self.strain_peak,
-            "cell_kpa": dict(zip(self.numbers.centres, (1e-3 * self.cell_pa).tolist(), strict=True)),
+            "cell_kpa": dict(zip(self.places, (1e-3 * self.cell_pa).tolist(), strict=True)),
             "joint_mm": {self.joints[0]: self.screw.at_mm},
             "lost_contact_s": self.lost_contact_s,
             "shape_m": self.shape_m,

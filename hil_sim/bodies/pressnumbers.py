@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from hil_sim.bodies.screw import ScrewNumbers
 from hil_sim.meshfile import read_mesh
 from hil_sim.physics.block.block import Block, hold
@@ -33,6 +35,7 @@ class PressNumbers:
     dt: float  # of the block's steps
     side: float  # of a force cell
     centres: dict[str, tuple[float, float]]  # of the force cells by their labels
+    relative: bool  # they are shares of the block's extent
     material: Material
     screw: ScrewNumbers
     at: float | None = None  # x of the axis, None: the middle of the block
@@ -71,14 +74,22 @@ def press_of(numbers: PressNumbers, material: Material | None = None) -> Press:
     return Press(block, hold((bottom, 0.0, 0.0)), indenter_of(numbers), axis)
 
 
-def cells_of(numbers: PressNumbers, mesh: Mesh) -> Cells:
+def places_of(numbers: PressNumbers, mesh: Mesh) -> dict[str, tuple[float, float]]:
+    """Return where the force cells are in the coordinates of the mesh [m]."""
+    if not numbers.relative:
+        return numbers.centres
+    (left, bottom), (width, height) = mesh.points.min(axis=0).tolist(), np.ptp(mesh.points, axis=0).tolist()
+    return {label: (left + x * width, bottom + y * height) for label, (x, y) in numbers.centres.items()}
+
+
+def cells_at(places: dict[str, tuple[float, float]], side: float, mesh: Mesh) -> Cells:
     """Return the force cells; BlockError, which names it, for one that is not all inside the block."""
-    for label, centre in numbers.centres.items():
+    for label, centre in places.items():
         try:
-            Cells(mesh, [centre], numbers.side)
+            Cells(mesh, [centre], side)
         except BlockError as error:
             raise BlockError(f"force cell {label}: {error}") from error
-    return Cells(mesh, list(numbers.centres.values()), numbers.side)
+    return Cells(mesh, list(places.values()), side)
 
 
 def shape_of(numbers: PressNumbers) -> float | None:

@@ -76,7 +76,7 @@ def _cells(plant: "PressPlant") -> dict[str, dict[str, Any]]:
     side_mm, pressures = 1e3 * plant.numbers.side, (1e-3 * plant.cell_pa).tolist()
     return {
         label: {"centre_mm": [1e3 * x, 1e3 * y], "side_mm": side_mm, "pressure_kpa": pressure}
-        for (label, (x, y)), pressure in zip(plant.numbers.centres.items(), pressures, strict=True)
+        for (label, (x, y)), pressure in zip(plant.places.items(), pressures, strict=True)
     }
 
 

@@ -23,7 +23,7 @@ from hil_sim.physics.coilset import CoilNumbers
 from hil_sim.physics.hand.numbers import HandNumbers
 from hil_sim.robots.check import Check, Entry, near
 from hil_sim.robots.keys import COILS, FINGERS, KINDS, PRESS, RING, SHELL, SPHERE
-from hil_sim.robots.pressfile import press_numbers
+from hil_sim.robots.pressfile import centres_of, press_numbers
 
 FOLDER = Path(__file__).parent
 PROFILES = Path(__file__).parents[2] / "firmware" / "robots"
@@ -146,7 +146,7 @@ def _robot(path: Path, data: dict[str, Any], check: Check) -> RobotFile:
         labels=(*coils.get("labels", ()), *points),
         jumps=tuple(zip(points, points[1:] + points[:1], strict=True)),
         joints=tuple(data[kind]["labels"]) if kind in (FINGERS, PRESS) else (),
-        cells=tuple(data.get("cells", {}).get("centres_mm", ())),
+        cells=tuple(centres_of(data)),
         ring=RingNumbers(**groups["body"]) if kind == RING else None,
         sphere=SphereNumbers(**groups["body"]) if kind == SPHERE else None,
         fingers=_hand(groups, check.choices) if kind == FINGERS else None,

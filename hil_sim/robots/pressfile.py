@@ -18,8 +18,9 @@ def press_numbers(path: Path, data: Mapping[str, Any], groups: Groups, choices: 
     numbers = {name: int(value) if name in WHOLE else value for name, value in groups["press"].items()}
     return PressNumbers(
         kind=choices["press.indenter"],
-        corners=_places(dict(enumerate(press.get("corners_mm", ())))),
-        centres=dict(zip(data["cells"]["centres_mm"], _places(data["cells"]["centres_mm"]), strict=True)),
+        corners=tuple((1e-3 * x, 1e-3 * y) for x, y in press.get("corners_mm", ())),
+        centres=centres_of(data),
+        relative="centres_percent" in data["cells"],
         g=groups["ground"]["gravity"],
         material=_material(groups["material"], choices["press.plane"]),
         screw=ScrewNumbers(**groups["screw"]),
@@ -28,8 +29,11 @@ def press_numbers(path: Path, data: Mapping[str, Any], groups: Groups, choices: 
     )
 
 
-def _places(places: Mapping[Any, list[float]]) -> tuple[tuple[float, float], ...]:
-    return tuple((1e-3 * x, 1e-3 * y) for x, y in places.values())
+def centres_of(data: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
+    """Return where the force cells are by their labels [m], or as shares of the block; empty for other robots."""
+    cells = data.get("cells", {})
+    scale, key = (1e-2, "centres_percent") if "centres_percent" in cells else (1e-3, "centres_mm")
+    return {label: (scale * x, scale * y) for label, (x, y) in cells.get(key, {}).items()}
 
 
 def _material(numbers: Mapping[str, float], plane: str) -> Material:

@@ -15,6 +15,10 @@ from hil_sim.robots.keys import COILS, FINGERS, PRESS, RING, SERVOS, SHELL, SPHE
 CHIPS = (96, 97)  # PWM chips of the board
 PINS = (8, 9, 10)  # of the board, for servos
 LABELS = {FINGERS: '["R", "L"], the right finger first', PRESS: '["P"]'}
+PLACES = {
+    "centres_percent": "of the block's width and height",
+    "centres_mm": "in the coordinates of the block",
+}  # where the force cells are: one of these
 CELLS_MAX = 13  # of 16 inputs one has the load cell, and two the axis
 Mistakes = Iterator[tuple[str, str]]
 Sections = Mapping[str, dict[str, Any]]
@@ -53,7 +57,8 @@ TEXTS = (
     Text("press", "corners_mm", PRESS, needed=False),
     Text("press", "plane", PRESS, ("strain", "stress")),
     Text("press", "mesh", PRESS, needed=False),
-    Text("cells", "centres_mm", PRESS),
+    Text("cells", "centres_percent", PRESS, needed=False),
+    Text("cells", "centres_mm", PRESS, needed=False),
     Text("wiring", "pins", SERVOS),
 )
 CHOICES = {text.name: text.words for text in TEXTS if text.section in (FINGERS, PRESS) and text.words}
@@ -163,16 +168,21 @@ def _joints(sections: Sections, section: str, example: str) -> Mistakes:
 
 def _pressed(sections: Sections) -> Mistakes:
     """Yield what is wrong with the mesh of a press's block, the corners of its polygon, and the places of its cells."""
-    press, centres = sections.get("press", {}), sections.get("cells", {}).get("centres_mm", {})
+    press, cells = sections.get("press", {}), sections.get("cells", {})
     if not isinstance(press.get("mesh", ""), str):
         yield "press.mesh", 'mesh: write it as mesh = "block.msh", a file beside this one'
-    corners = press.get("corners_mm")
-    if not (isinstance(corners, list) and all(map(_is_place, corners))) and corners is not None:
-        yield "press.corners_mm", "corners_mm: write them as [[x, y], ...], around the axis"
+    corners = press.get("corners_mm", [])
+    if not (isinstance(corners, list) and all(map(_is_place, corners))):
+        yield "press.corners_mm", "corners_mm: write them as [[x, y], ...], x from the axis"
+    given = [key for key in PLACES if key in cells]
+    if len(given) != 1:
+        yield "cells", f"[cells] needs {' or '.join(PLACES)}, and has {' and '.join(given) or 'neither'}"
+        return
+    centres = cells[given[0]]
     if not (isinstance(centres, dict) and all(map(_is_place, centres.values()))):
-        yield "cells.centres_mm", "centres_mm: write them as { C1 = [x, y], ... }, from the block's lower left corner"
+        yield f"cells.{given[0]}", f"{given[0]}: write them as {{ C1 = [x, y], ... }}, {PLACES[given[0]]}"
     elif len(centres) > CELLS_MAX:
-        yield "cells.centres_mm", f"centres_mm: {len(centres)} cells, the converters have {CELLS_MAX} inputs for them"
+        yield f"cells.{given[0]}", f"{given[0]}: {len(centres)} cells, the converters have {CELLS_MAX} inputs for them"
 
 
 def _is_place(value: object) -> bool:
