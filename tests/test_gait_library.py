@@ -10,7 +10,10 @@ from protocol.verify import check_code
 from tests.gait_scripts import ROOT, circular, profile_of
 
 GAITS = sorted((ROOT / "gaits").glob("*.gait"))
-BEGINNINGS = {"circular": "# The circular robot ", "sphere": "# The spherical robot ", "fingers": "# The soft fingers "}
+BEGINNINGS = {
+    "circular": "# The circular robot ", "sphere": "# The spherical robot ", "fingers": "# The soft fingers ",
+    "press": "# The press ",
+}  # fmt: skip
 
 
 def made(name, *overrides):
@@ -34,7 +37,8 @@ def test_every_gait_is_sound_for_the_robot_it_names(path):
     compiled = compile_script(script, profile)
 
     assert check(compiled).diagnostics == ()
-    check_code(compiled.code, len(profile.coil_labels), profile.program.bytes_max, len(profile.joint_labels))
+    counts = len(profile.coil_labels), profile.program.bytes_max, len(profile.joint_labels), len(profile.cells)
+    check_code(compiled.code, *counts)
 
 
 @pytest.mark.parametrize("path", GAITS, ids=lambda path: path.stem)
