@@ -68,7 +68,7 @@ def command(
                 if outlive:
                     note(f"session {face.talk.session.number}: `softrig attach` takes the program up again")
                 code = outliving(compiled.program) if outlive else compiled.program
-                orders = Orders(dry_run, without, IfLost(if_lost == "stop", patience))
+                orders = Orders(dry_run, without, IfLost(if_lost == "stop", patience), finely=log is not None)
                 ending, took = _run(face, code, orders, progress)
             facts = Facts(compiled, address, face.info(), face.statistics(), link.observer, took, face.interruptions())
             fields = report(ending, keeper.recording, facts)
@@ -90,6 +90,7 @@ class Orders(NamedTuple):
     dry_run: bool
     without: tuple[str, ...]
     if_lost: IfLost
+    finely: bool  # for the log
 
 
 def _run(face: Robot, code: bytes, orders: Orders, progress: Progress) -> tuple[Ending | None, Took]:
@@ -99,7 +100,7 @@ def _run(face: Robot, code: bytes, orders: Orders, progress: Progress) -> tuple[
     if orders.dry_run:
         upload(face, code, progress)
     else:
-        ending = run(face, code, progress, orders.without, orders.if_lost)
+        ending = run(face, code, progress, orders.without, orders.if_lost, orders.finely)
     return ending, Took(wall_s() - begun[0], face.link.now_s() - begun[1])
 
 
