@@ -13,6 +13,7 @@ CHECK_MS = 325  # between two looks at the chips' settings, and the step of the 
 LEASE_MS = 505  # and one step
 MONOSTABLE_MS = 50
 
+PUSH = "press to 3 N over 1 s for 5 s overlap 4 s\n"
 GRIP = "together:\n    move R to 8 deg over 500 ms\n    move L to -8 deg over 500 ms\n"
 
 ORDERS = {  # what is going on: the script, and the time after connecting within which the fault happens [ms]
@@ -25,7 +26,12 @@ ORDERS = {  # what is going on: the script, and the time after connecting within
     "a joint moves": ("move R to -20 deg over 3 s", (700, 2000)),
     "joints hold": (GRIP + "wait 5 s", (1200, 2500)),
     "an object is turned": (GRIP + "orient 1 deg for 3 s", (1200, 2500)),
-}
+    "before pressing": ("press to 3 N over 1 s for 3 s", (0, 0)),
+    "an axis moves": ("move P to 4 mm over 2 s\nwait 3 s", (700, 1500)),
+    "an axis holds": ("move P to 4 mm over 800 ms\nwait 5 s", (1400, 2500)),
+    "a force is held": ("press to 3 N over 1 s for 4 s", (1500, 3000)),
+    "a force cell is asked for": (PUSH + "wait until C1.pressure < 1 kPa timeout 4 s else abort", (1500, 3000)),
+}  # fmt: skip
 RECOVERIES = {
     "none": "Nothing to do.",
     "clear": "`softrig clear`, then go on.",
@@ -84,7 +90,7 @@ class Row:
         return RECOVERIES[self.recovery].format(again=self.again)
 
 
-TWO, FULL, IDLE, BEFORE, GUARDED, ATTITUDE, MOVING, HOLDING, TURNING = (
+TWO, FULL, IDLE, BEFORE, GUARDED, ATTITUDE, MOVING, HOLDING, TURNING, UNPRESSED, AXIS, DEPTH, FORCE, CELL = (
     "two coils at 30 %",
     "a coil at 100 %",
     "all coils off",
@@ -94,11 +100,18 @@ TWO, FULL, IDLE, BEFORE, GUARDED, ATTITUDE, MOVING, HOLDING, TURNING = (
     "a joint moves",
     "joints hold",
     "an object is turned",
+    "before pressing",
+    "an axis moves",
+    "an axis holds",
+    "a force is held",
+    "a force cell is asked for",
 )
+BEFORES = (BEFORE, UNPRESSED)
 GOES_ON = (None, "done", "none")
-FINGERS = "fingers"
+FINGERS, PRESS = "fingers", "press"
 ASTRAY_MS = 1700  # to be pushed away, the profile's astray_ms, and the next look
 POT_MS = 115  # one joint is read in a step: ten readings, one more, and the supply
+READS_MS = 65  # ten readings, one a step, one more and the step that acts
 PULSES_MS = 16  # a stuck MOSFET: from the supply's switch to the look
 
 ROWS = (
@@ -270,4 +283,59 @@ ROWS = (
     ),
     Row("camera-frozen", TURNING, "F27", None, "camera lost", "orient", "As above.", "R33", robot=FINGERS),
     Row("object-hidden", TURNING, "F27", None, "camera lost", "orient", "As above.", "R33", robot=FINGERS),
+    Row(
+        "converter-dead", HOLDING, "F26", POT_MS, "fault", "clear, mend",
+        "The potentiometers read what no position gives, ten times.", "F26", robot=FINGERS,
+    ),
+    Row("converter-dead:2", HOLDING, "", *GOES_ON, "Nothing that fingers have hangs on it.", robot=FINGERS),
+    Row(
+        "estop-open", FORCE, "F02", 5, "fault", "mend, clear",
+        "The loop opens the supply of the servo itself; the axis stays where it is, by its screw.", robot=PRESS,
+    ),
+    Row(
+        "hang", FORCE, "F12", 205, "fault", "clear",
+        "A servo's pulses need no program: the axis holds until the watchdog resets, and goes no further.", robot=PRESS,
+    ),
+    Row("reset", FORCE, "F12", 5, "fault", "clear", "PWR_EN rests low; the axis stays where it is.", robot=PRESS),
+    Row("cable-cut", FORCE, "", LEASE_MS + 5, "link lost", "mend", "The lease runs out (F03).", robot=PRESS),
+    Row(
+        "joint-jam:P", AXIS, "F25", 500, "fault", "clear, mend",
+        "At 2 mm/s a servo strains for 60 ms before it takes its stall current; that must last for 300 ms.", "F25",
+        robot=PRESS,
+    ),
+    Row("joint-jam:P", DEPTH, "", *GOES_ON, "An axis that holds does not move.", robot=PRESS),
+    Row(
+        "servo-dead:P", AXIS, "F28", ASTRAY_MS + 200, "fault", "clear, mend",
+        "At 2 mm/s it is 0.5 mm off after 250 ms; that must last for 1.5 s.", "F28", robot=PRESS,
+    ),
+    Row("servo-dead:P", DEPTH, "", *GOES_ON, "The screw holds the axis without it.", robot=PRESS),
+    Row(
+        "pot-open:P", FORCE, "F26", READS_MS, "fault", "clear, mend",
+        "A reading that no position gives, ten times, one in each step.", "F26", robot=PRESS,
+    ),
+    Row(
+        "load-cell-open", UNPRESSED, "F30", 0, "refused", "replace",
+        "Readings at the end of the converter's range: no force is regulated by them.", "F30", robot=PRESS,
+    ),
+    Row("load-cell-open", FORCE, "F30", READS_MS, "fault", "clear, mend", "Ten of them.", "F30", robot=PRESS),
+    Row(
+        "load-cell-open", DEPTH, "F30", READS_MS, "fault", "clear, mend",
+        "As above: an axis without a load cell would press as hard as it can.", "F30", robot=PRESS,
+    ),
+    Row(
+        "cell-open:C1", FORCE, "", *GOES_ON,
+        "Nothing tells: an open force cell reads 0, as one without pressure does.", robot=PRESS,
+    ),
+    Row(
+        "cell-open:C1", CELL, "", None, "done", "none",
+        "A condition takes the 0 for a pressure.", robot=PRESS,
+    ),
+    Row(
+        "converter-dead:1", FORCE, "F26", READS_MS, "fault", "clear, mend",
+        "The potentiometer hangs on it.", "F26", robot=PRESS,
+    ),
+    Row(
+        "converter-dead:2", FORCE, "F30", READS_MS, "fault", "clear, mend",
+        "The load cell hangs on it.", "F30", robot=PRESS,
+    ),
 )  # fmt: skip

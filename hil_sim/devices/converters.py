@@ -25,9 +25,9 @@ class Converters:
         self.chips = tuple(Mcp3208(self._wires(chip)) for chip in range(CHIPS))
 
     def counts(self, number: int) -> int:
-        """Return a conversion of an input by itself."""
-        chip, channel = divmod(number, CHANNELS)
-        return self.chips[chip].counts(SINGLE_ENDED | channel)
+        """Return what is read of an input by itself: 0 of a chip that is dead."""
+        chip, channel = self.chips[number // CHANNELS], number % CHANNELS
+        return chip.counts(SINGLE_ENDED | channel) if chip.alive else 0
 
     def reset(self) -> None:
         """Begin anew, as a power cycle does."""

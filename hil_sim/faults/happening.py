@@ -12,9 +12,11 @@ from collections.abc import Sequence
 from random import Random
 
 from hil_sim.bench import Bench
+from hil_sim.faults.gauges import cells_of
 from hil_sim.faults.parts import Mend, Value
-from hil_sim.faults.table import BATTERY, CAMERA, IMU, JOINT, LABEL, Fault, read
+from hil_sim.faults.table import BATTERY, CAMERA, CELL, CONVERTER, IMU, JOINT, LABEL, LOAD_CELL, Fault, read
 from hil_sim.journal import FAULT
+from hil_sim.loadcells import Loaded
 
 BEGUN, MENDED = 1, 0  # in the journal
 
@@ -65,13 +67,21 @@ def schedule(bench: Bench, at_us: int, text: str, for_us: int | None = None, see
 
 def _fits(bench: Bench, fault: Fault, text: str, value: Value) -> None:
     """Raise ValueError when a fault is of something that this bench has not."""
-    parts = {BATTERY: bench.supply.battery, IMU: bench.board.imu, CAMERA: bench.board.camera}
-    if fault.of and parts[fault.of] is None:
+    has = {
+        BATTERY: bench.supply.battery is not None,
+        IMU: bench.board.imu is not None,
+        CAMERA: bench.board.camera is not None,
+        CONVERTER: bool(bench.joints),
+        LOAD_CELL: isinstance(bench.plant, Loaded),
+    }
+    if fault.of and not has[fault.of]:
         raise ValueError(f"fault {text}: this robot has no {fault.of}")
     if fault.argument == LABEL:
         _names_one(fault, text, value, "coil", bench.plant.labels)
     if fault.argument == JOINT:
         _names_one(fault, text, value, "joint", [joint.label for joint in bench.joints])
+    if fault.argument == CELL:
+        _names_one(fault, text, value, "force cell", cells_of(bench))
 
 
 def _names_one(fault: Fault, text: str, value: Value, what: str, labels: Sequence[str]) -> None:

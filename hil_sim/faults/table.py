@@ -8,7 +8,7 @@ What stands after the colon is said in the table.
 from dataclasses import dataclass
 
 from hil_sim.devices.lsm6ds3tr import Lsm6ds3tr
-from hil_sim.faults import limbs, lines, parts
+from hil_sim.faults import gauges, limbs, lines, parts
 from hil_sim.faults.limbs import camera, of_a_joint
 from hil_sim.faults.parts import Mishap, Value, imu, of_a_coil, on_off, once
 from hil_sim.robots.check import near
@@ -16,7 +16,7 @@ from hil_sim.robots.check import near
 
 @dataclass(frozen=True)
 class Argument:
-    """What stands after the colon of a name: a coil or joint, a number in a range, or one of some words."""
+    """What stands after the colon of a name: a coil, joint or force cell, a number in a range, or one of some words."""
 
     form: str = ""
     least: float = 0
@@ -30,7 +30,7 @@ class Argument:
             if text not in allowed:
                 raise ValueError(f"after the colon stands {' or '.join(self.words)}" if self.words else "takes nothing")
             return text
-        if self.form in (LABEL.form, JOINT.form):
+        if self.form in (LABEL.form, JOINT.form, CELL.form):
             return text
         try:
             number = float(text) if self.form == DRIFT.form else int(text)
@@ -60,9 +60,10 @@ class Fault:
         return f"{self.name}:{self.argument.form}" if self.argument.form else self.name
 
 
-BATTERY, IMU, CAMERA = "battery", "attitude sensor", "camera"
+BATTERY, IMU, CAMERA, LOAD_CELL, CONVERTER = "battery", "attitude sensor", "camera", "load cell", "converter"
 LABEL = Argument("LABEL")
 JOINT = Argument("JOINT")
+CELL = Argument("CELL")
 COUNT = Argument("COUNT", 1, 1_000_000)
 PERMILLE = Argument("PERMILLE", 1, 1000)
 PERCENT = Argument("PERCENT", 1, 100)
@@ -70,6 +71,7 @@ DELAY = Argument("MS", 1, 10_000)
 BAUD = Argument("BAUD", 300, 4_000_000)
 DRIFT = Argument("K_PER_S", -1000, 1000)
 TASK = Argument("TASK", words=parts.TASKS)
+CHIP = Argument("CHIP", words=gauges.CONVERTERS)
 
 TABLE = (
     Fault("coil-open", "The wire of a coil is broken.", of_a_coil(parts.coil_open), argument=LABEL),
@@ -130,6 +132,15 @@ TABLE = (
     Fault("joint-jam", "A joint is stuck, whatever its servo does.", of_a_joint(limbs.joint_jam), argument=JOINT),
     Fault("servo-dead", "A servo has no torque.", of_a_joint(limbs.servo_dead), argument=JOINT),
     Fault("pot-open", "The wire of a joint's potentiometer is broken.", of_a_joint(limbs.pot_open), argument=JOINT),
+    Fault(
+        "converter-dead",
+        "The first converter does not answer, or the second, or neither: all its inputs read 0.",
+        gauges.converter_dead,
+        argument=CHIP,
+        of=CONVERTER,
+    ),
+    Fault("load-cell-open", "The wire of the load cell is broken.", on_off(gauges.load_cell_open), of=LOAD_CELL),
+    Fault("cell-open", "The wire of a force cell is broken.", gauges.cell_open, argument=CELL),
     Fault("camera-lost", "The camera does not answer.", on_off(camera(limbs.camera_lost)), of=CAMERA),
     Fault("camera-frozen", "The camera gives its last frame for ever.", on_off(camera(limbs.camera_frozen)), of=CAMERA),
     Fault("object-hidden", "The camera does not see the object.", on_off(camera(limbs.object_hidden)), of=CAMERA),
