@@ -55,7 +55,7 @@ def test_of_two_presses_the_stronger_is_shown_until_the_next_one_begins():
 
     press = press_of(twice)
 
-    push, hold, freed, after = (twice.scenes[i]["t_s"] for i in press)
+    push, hold, freed, after = (twice.scenes[i]["t_s"] for i in press[1:])
     assert [push, hold] == pytest.approx([1.0, 1.0])
     assert 1.0 < freed < 1.3
     assert 3.0 < after < 3.7
@@ -205,6 +205,15 @@ def test_a_block_that_nobody_saw_inside_is_drawn_by_its_surface(pressed, tmp_pat
         body(unseen, scene).vertices[:, 1].max(), abs=1e-5
     )
     assert {"a", "b", "load cell"} <= set(texts(tmp_path / "a.svg"))
+
+
+def test_a_press_without_a_hold_is_shown_with_the_block_before_it():
+    twice = recorded_press(TWICE[2:])
+
+    shown = [twice.scenes[i] for i in telling(twice)]
+
+    assert [scene["touching"] for scene in shown] == [False, True, False, False]
+    assert shown[0]["t_s"] < shown[1]["t_s"]
 
 
 def test_a_press_that_still_presses_is_shown_at_even_times():

@@ -24,8 +24,9 @@ RISEN_MM = 0.05  # above where it was deepest: the hold is over
 
 
 class Press(NamedTuple):
-    """One press: the scenes that end its push and its hold, the first after it and the last before the next."""
+    """One press by its scenes: before it, at the end of push and hold, the first after it, the last before the next."""
 
+    before: int
     push: int
     hold: int
     freed: int
@@ -46,7 +47,8 @@ def press_of(recording: Recording) -> Press:
     push = int(inside[force[inside] >= FULL * force[best]][0])
     hold = int(inside[depth >= depth.max() - RISEN_MM][-1])
     again = np.flatnonzero(touching[end:])
-    return Press(push, max(push, hold), end, end + int(again[0]) - 1 if len(again) else len(touching) - 1)
+    after = end + int(again[0]) - 1 if len(again) else len(touching) - 1
+    return Press(max(0, begin - 1), push, max(push, hold), end, after)
 
 
 def slices_of(recording: Recording) -> list[Slice]:

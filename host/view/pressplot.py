@@ -60,10 +60,14 @@ def press_figure(recording: Recording) -> Figure:
 
 
 def telling(recording: Recording) -> list[int]:
-    """Return the scenes that tell a run: push, hold, release and long after, or evenly when there was no such press."""
+    """Return the scenes that tell a run: push, hold, release and long after, or evenly when there was no such press.
+
+    A press without a hold is shown with the block as it was before it.
+    """
     try:
+        press = press_of(recording)
         told = [nearest(recording.scenes, each.host_ms) for each in slices_of(recording)] if recording.slices else []
-        return told or list(press_of(recording))
+        return sorted({press.before, *(told or press)})[-SHOWN:]
     except BadRequest:
         return [round(i) for i in np.linspace(0, len(recording.scenes) - 1, SHOWN)]
 
