@@ -109,6 +109,8 @@ class FakeRobot:
             text = self.help_text if order.part == messages.HELP else self.dictionary
             page = text[order.offset : order.offset + min(order.count, PAGE)]
             self._post(messages.DICTIONARY_PAGE, part=order.part, offset=order.offset, text=page)
+        elif message is messages.WATCH:
+            self.telemetry(slot=4)
         elif message.name in self.refuse:
             code, channel, value, limit = self.refuse[message.name]
             self._send(
@@ -180,7 +182,7 @@ class FakeRobot:
             self._due_ms = now_ms + self.period_ms
             self.telemetry()
 
-    def telemetry(self, late_ms: int = 0) -> None:
+    def telemetry(self, late_ms: int = 0, slot: int = 0) -> None:
         """Send telemetry, or what is that late."""
         degrees = [250 + duty for duty in self.duty]
         parts = self.parts
@@ -193,7 +195,7 @@ class FakeRobot:
             *[self.load_mn] * parts.loads, *self.cell_pa,
         ))  # fmt: skip
         now_ms = (self.uptime_ms - late_ms) & 0xFFFFFFFF
-        self._post(messages.TELEMETRY, slot=0, form=0, count=self.count, now_ms=now_ms, values=values)
+        self._post(messages.TELEMETRY, slot=slot, form=0, count=self.count, now_ms=now_ms, values=values)
         self.count = (self.count + 1) & 255
 
     def _hello(self, order) -> None:

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from host.cli.output import printable
 from host.profile import Parts
 from host.records import Telemetry
 
@@ -22,15 +23,16 @@ def gauge(target_n: float, parts: Parts, quiet: bool = False) -> Iterator[Show]:
         return
     from rich.console import Console  # noqa: PLC0415
     from rich.live import Live  # noqa: PLC0415
+    from rich.text import Text  # noqa: PLC0415
 
-    drawn_ms = 0
+    drawn_ms = -DRAWN_EVERY_MS
     with Live(console=Console(stderr=True), auto_refresh=False, transient=True) as live:
 
         def show(record: Telemetry) -> None:
             nonlocal drawn_ms
             if record.host_ms - drawn_ms >= DRAWN_EVERY_MS:
                 drawn_ms = record.host_ms
-                live.update(reading(record, parts, target_n), refresh=True)
+                live.update(Text(printable(reading(record, parts, target_n))), refresh=True)
 
         yield show
 
