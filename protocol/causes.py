@@ -19,7 +19,7 @@ CODES = (
         codes.NOT_ARMED, "R01", "",
         "The robot is not armed.",
         NOTHING,
-        "Arm first; `run`, `fire`, `move` and `orient` do it themselves.",
+        "Arm first; `run`, `fire`, `move`, `orient` and `press` do it themselves.",
     ),
     Code(
         codes.TRIPPED, "R02", "",

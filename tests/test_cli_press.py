@@ -235,7 +235,7 @@ def told_of(load_n, mm) -> Telemetry:
 
 
 def test_the_force_is_shown_beside_the_one_that_was_asked_for():
-    assert reading(told_of(4.984, 3.21), AXIS.parts, 5.0).startswith("4.98 N of 5 N   P 3.21 mm   C1 1.25 kPa   C2 ")
+    assert reading(told_of(4.984, 3.21), AXIS.parts, 5.0).startswith("4.98 N of 5 N   P 3.21 mm   C1 1.25 C2 1.25 ")
 
 
 def test_the_force_is_shown_at_a_terminal_while_it_presses(monkeypatch, capsys):

@@ -45,5 +45,6 @@ def reading(record: Telemetry, parts: Parts, target_n: float) -> str:
         f"{label} {position:.2f} {parts.unit}"
         for label, position in zip(parts.joints, record.joint_position, strict=False)
     ]
-    told += [f"{label} {kpa:.2f} kPa" for label, kpa in zip(parts.cells, record.cell_kpa, strict=False)]
+    cells = [f"{label} {kpa:.2f}" for label, kpa in zip(parts.cells, record.cell_kpa, strict=False)]
+    told += [f"{' '.join(cells)} kPa"] if cells else []
     return "   ".join(told)
