@@ -57,12 +57,10 @@ def slices_of(recording: Recording) -> list[Slice]:
         raise BadRequest("this figure needs the fields of a block: run it on the bench, --robot sim:press")
     press, seen = press_of(recording), [scene["host_ms"] for scene in recording.scenes]
     times = np.array([each.host_ms for each in recording.slices])
-    before = [
-        int(np.searchsorted(times, seen[i] + APART_MS, "right")) - 1 for i in (press.push, press.hold, press.after)
-    ]
-    freed = int(np.searchsorted(times, seen[press.freed] - APART_MS))
-    push, hold, after = (max(0, i) for i in before)
-    return [recording.slices[i] for i in (push, hold, min(freed, after), after)]
+    hold, after = (int(np.searchsorted(times, seen[i] + APART_MS, "right")) - 1 for i in (press.hold, press.after))
+    push = min(nearest(recording.slices, seen[press.push]), max(0, hold))
+    freed = min(int(np.searchsorted(times, seen[press.freed] - APART_MS)), after)
+    return [recording.slices[max(0, i)] for i in (push, hold, freed, after)]
 
 
 def of_scenes(recording: Recording, name: str) -> Numbers:
