@@ -7,12 +7,15 @@ from host.gait.checker import check
 from host.gait.compiler import compile_script
 from host.gait.diagnostics import GaitError
 from host.gait.parser import parse_file
+from host.gait.plan import Move, Press, Wait, walk
 from host.gait.script import loads
 from host.gait.syntax import KEYWORDS
-from protocol.program import HEADER_BYTES, read_header
+from protocol import program
+from protocol.program import HEADER_BYTES, disassemble, read_header
 from protocol.verify import check_code
-from tests.gait_scripts import HEAD, hand_robot, round_robot
+from tests.gait_scripts import HEAD, hand_robot, press_robot, round_robot
 from tests.joint_scripts import bodies as joint_bodies
+from tests.press_scripts import bodies as press_bodies
 
 LIMITS = settings(max_examples=150, deadline=None)
 
@@ -53,7 +56,7 @@ scripts = st.lists(statements, min_size=1, max_size=8).map(lambda lines: HEAD + 
 pieces = st.sampled_from(
     [*KEYWORDS, "\n", "\n    ", "\n  ", ":", " ", "A", "$c", "(", ")", ",", "60", "%", "ms", "C", "0.5", "[", "]", "..",
      "=", "#", '"', "<", ">", ".", "temperature", "any", "all", "-", "*", "/", "\t", "\r\n", "é", "\x00", "\x01",
-     "R", "deg", "angle", "orientation"]
+     "R", "deg", "angle", "orientation", "P", "C1", "N", "kPa", "mm", "force", "pressure", "depth"]
 )  # fmt: skip
 
 
@@ -101,10 +104,39 @@ def test_the_worst_case_of_a_random_script_of_moves_is_consistent(body):
 
 
 @LIMITS
+@given(press_bodies)
+def test_a_random_script_that_presses_says_in_its_program_what_its_plan_says(body):
+    made = compile_script(loads(HEAD + body), press_robot())
+
+    check_code(made.code, 0, 1 << 20, joints=1, cells=6)
+    rows = [row[1:] for row in disassemble(made.code)]
+    assert b"".join(assembled(*row) for row in rows) == made.code
+    presses = [(op.target_mn, op.over_ms, op.time_ms) for op in walk(made.plan) if isinstance(op, Press)]
+    assert [row[1:] for row in rows if row[0] == "press"] == presses
+    moves = [(op.mask, op.target_centi, op.time_ms) for op in walk(made.plan) if isinstance(op, Move)]
+    assert [row[1:] for row in rows if row[0] == "move"] == moves
+    waits = [(op.condition, op.timeout_ms, op.otherwise) for op in walk(made.plan) if isinstance(op, Wait)]
+    assert [row[1:] for row in rows if row[0] == "wait"] == waits
+
+
+@LIMITS
+@given(press_bodies)
+def test_the_worst_case_of_a_random_script_that_presses_is_consistent(body):
+    made = check(compile_script(loads(HEAD + body), press_robot()))
+
+    assert 1500 <= made.shortest_ms <= made.longest_ms
+    (axis,) = made.joints
+    assert axis.least_centi <= -200 <= axis.most_centi
+    assert 1500 <= axis.driven_ms <= made.longest_ms
+    assert axis.held_ms <= made.longest_ms - 1500 + 5
+    assert (made.force_mn > 0) <= ("press to" in body)
+
+
+@LIMITS
 @given(st.text(max_size=300) | st.lists(pieces, max_size=60).map("".join))
 def test_random_text_is_read_or_refused_and_nothing_else(text):
     for source in (text, HEAD + text):
-        for profile in (round_robot(), hand_robot()):
+        for profile in (round_robot(), hand_robot(), press_robot()):
             refusal = refused(source, profile)
 
             assert refusal is None or all(item.message for item in refusal.diagnostics)
@@ -121,14 +153,20 @@ def test_a_mistake_always_lies_within_the_text(text):
 
 
 @LIMITS
-@given(scripts | joint_bodies.map(HEAD.__add__), st.data())
+@given(scripts | joint_bodies.map(HEAD.__add__) | press_bodies.map(HEAD.__add__), st.data())
 def test_a_script_with_a_hole_in_it_is_read_or_refused_and_nothing_else(text, data):
     start = data.draw(st.integers(0, len(text)))
     end = data.draw(st.integers(start, min(start + 20, len(text))))
 
-    refusal = refused(text[:start] + text[end:], hand_robot() if "move" in text else round_robot())
+    profile = press_robot() if "move P" in text else hand_robot() if "move" in text else round_robot()
+    refusal = refused(text[:start] + text[end:], profile)
 
     assert refusal is None or refusal.exit_code in (2, 4)
+
+
+def assembled(name, *arguments):
+    """Return the bytes of an op as `disassemble` names it."""
+    return getattr(program, "next_" if name == "next" else name)(*arguments)
 
 
 def refused(text, profile):
