@@ -1,4 +1,7 @@
-"""Fuzz targets: cores on the table top. Whatever arrives, nothing is driven that nobody ordered, and no joint jumps."""
+"""Fuzz targets: cores on the table top. Whatever arrives, nothing is driven that nobody ordered, and no joint jumps.
+
+A press does not push on for long at more than the force that trips.
+"""
 
 import io
 import json
@@ -10,13 +13,16 @@ from firmware.profile import Profile
 from protocol import frames, messages, program
 from protocol.link import QUEUE_MAX, WINDOW
 from tests.firmware_bench import FINGERS, PROFILE, ROOT, Table
+from tests.firmware_press import PRESS, Axis
 from tests.fuzz_script import SESSION, Script
 from tests.odd_robots import MIXED
 
 ROOM = 512
 KEY = bytes(range(32))
-DRIVING = (messages.FIRE.number, messages.MOVE.number, messages.START.number)
+DRIVING = (messages.FIRE.number, messages.MOVE.number, messages.PRESS.number, messages.START.number)
 FRAME_MS = 10  # of the camera: from one to the next the loop turns the joints at once
+PUSHED_MAX = 20  # steps on end of a press at more than the force that trips
+PUSHED_MARGIN_N = 0.25
 
 
 class Kind:
@@ -32,6 +38,7 @@ class Kind:
 
 
 ROUND, FINGER, BOTH = Kind(PROFILE.read_bytes()), Kind(FINGERS.read_bytes()), Kind(json.dumps(MIXED).encode())
+PUSHER = Kind(PRESS.read_bytes())
 
 
 class Robot:
@@ -44,12 +51,16 @@ class Robot:
         if keyed:
             self.board.flash.files["/key"] = KEY + crc32(KEY).to_bytes(4, "little")
         self.board.supply.mv = self.profile.supply.nominal_mv
+        self.axis = Axis(self.board, 1.0) if self.profile.press else None
+        if self.axis:
+            self.board.converter = self.axis
         self.core = Core(self.board, self.profile, boot=1)
         self.keyed = keyed
         self.ordered = False
         self.now_ms = 0
         self.reached = set()  # states, and whether anything was driven in them
         self.widths_ns = self._widths()
+        self.pushed = 0
         self.step(b"")
 
     def step(self, data: bytes) -> None:
@@ -57,6 +68,7 @@ class Robot:
         stops = frames.STOP in data
         out = self.core.step(self.now_ms, data, ROOM)
         self.now_ms += 5
+        self._pushed()
         self._turned()
         on = any(self.board.chip.duty_permille) or any(self.widths_ns)
         core = self.core
@@ -73,6 +85,17 @@ class Robot:
             assert core.session == 0
         assert len(core.link._ahead) < WINDOW
         assert max(len(core.link.flight.waiting), len(core.link._posts)) <= QUEUE_MAX
+
+    def _pushed(self) -> None:
+        """Let the axis of a press follow, and assert that it does not push on beyond the force that trips."""
+        if not self.axis:
+            return
+        self.axis.pass_time()
+        most_n = self.profile.load.trip_mn / 1000 + PUSHED_MARGIN_N
+        before_ns, (now_ns,) = self.widths_ns[0], self._widths()
+        pushes = now_ns is not None and (before_ns is None or now_ns >= before_ns)
+        self.pushed = self.pushed + 1 if pushes and self.axis.force_n > most_n else 0
+        assert self.pushed <= PUSHED_MAX
 
     def _turned(self) -> None:
         """Assert that no joint was told an angle outside its range, or one too far from the last."""
@@ -97,6 +120,11 @@ def core(data: bytes) -> None:
 def hand(data: bytes) -> None:
     """And to a robot of joints, or one that has coils besides."""
     played(data, BOTH if data[:1] and data[0] & 2 else FINGER)
+
+
+def press(data: bytes) -> None:
+    """And to a press."""
+    played(data, PUSHER)
 
 
 def played(data: bytes, kind: Kind) -> Robot:
@@ -124,6 +152,7 @@ def played(data: bytes, kind: Kind) -> Robot:
             line, seq = _program(script, robot.profile.crc, seq, act >> 4)
         elif what == 5:
             _break(robot.board, robot.profile, act >> 4)
+            _break_senses(robot, act >> 4)
         elif what == 6:
             line = script.sealed(messages.ARM.number, _arm(script), seq, 0, frames.RELIABLE)
             seq += 1
@@ -165,7 +194,7 @@ def _program(script: Script, robot_crc: int, seq: int, flags: int) -> tuple[byte
 
 
 def _break(board: Table, profile: Profile, what: int) -> None:
-    """Open the e-stop, lose a chip or the object, strain a joint, or make all well again."""
+    """Open the e-stop, lose a chip or the object, or make all well again."""
     board.closed = what != 1
     board.supply.absent = what == 3
     board.alerting = what == 4
@@ -175,5 +204,16 @@ def _break(board: Table, profile: Profile, what: int) -> None:
     board.supply.mv = 900 if what == 8 else profile.supply.nominal_mv
     board.watcher.absent, board.watcher.frozen, board.watcher.seen = what == 9, what == 10, what != 11
     board.watcher.centideg = 6000 if what == 12 else 0
-    board.converter.stuck_counts = {3: 4095} if what == 13 else {}
-    board.converter.ma[0] = 2500 if what == 14 else 100
+
+
+def _break_senses(robot: Robot, what: int) -> None:
+    """Lose or strain a joint, the load cell of a press or its force cells, or raise its block."""
+    axis = robot.axis
+    if axis is None:
+        robot.board.converter.stuck_counts = {3: 4095} if what == 13 else {}
+        robot.board.converter.ma[0] = 2500 if what == 14 else 100
+        return
+    axis.load_counts = {9: 0, 10: 4095}.get(what)
+    axis.cell_counts = [4095 if what == 11 else 800] * 6
+    axis.surface_mm = -3.0 if what == 12 else 0.0
+    axis.stuck = what == 13

@@ -99,6 +99,38 @@ def hand() -> Iterator[tuple[str, bytes]]:
         yield f"{name}stopped", armed + grip + STOP + WAIT + told(messages.CLEAR, b"", 0x07) + WAIT
 
 
+def press() -> Iterator[tuple[str, bytes]]:
+    armed = b"\x00" + HELLO + b"\xfc" * 2 + ARM + WAIT * 5
+
+    def pressed(target_mn: int, over_ms: int = 200, time_ms: int = 900) -> bytes:
+        fields = {"over_ms": over_ms, "time_ms": time_ms, "hold_ms": 3000}
+        return told(messages.PRESS, messages.PRESS.pack(target_mn=target_mn, **fields), 0x07)
+
+    def moved(target_centi: int, over_ms: int = 1500) -> bytes:
+        fields = {"joints": 1, "target_centi": target_centi, "over_ms": over_ms, "hold_ms": 3000}
+        return told(messages.MOVE, messages.MOVE.pack(**fields), 0x07)
+
+    clear = told(messages.CLEAR, b"", 0x07)
+    hard = program.Condition(program.FORCE, program.ANY, program.ABOVE, 1500, 0)
+    felt = program.Condition(program.PRESSURE, program.ANY, program.ABOVE, 3000, 0b111111)
+    deep = program.Condition(program.POSITION, program.ALL, program.ABOVE, 200, 1)
+    code = program.guard(felt) + program.press(2000, 200, 1200) + program.wait(hard, 900, program.CONTINUE)
+    code += program.wait(deep, 300, program.CONTINUE) + program.press(0, 0, 500) + program.delay(400) + program.halt()
+    down = armed + moved(100, 300) + WAIT * 5
+    yield "pressed", down + pressed(3000) + WAIT * 14
+    yield "let go", down + pressed(3000) + WAIT * 9 + pressed(0, 0, 300) + WAIT * 4 + moved(-200, 600) + WAIT * 6
+    yield "overloaded", armed + moved(1000) + WAIT * 26 + clear + ARM + WAIT * 5 + moved(0) + WAIT * 9
+    yield "blind", down + pressed(3000) + WAIT * 4 + b"\x95" + WAIT * 2 + b"\x05" + clear + ARM + WAIT
+    yield "torn", down + pressed(3000) + WAIT * 4 + b"\xa5" + WAIT * 2 + ARM + b"\x05" + clear + ARM + WAIT
+    yield "raised", down + pressed(9000) + WAIT * 4 + b"\xc5" + WAIT * 3 + b"\x05" + WAIT * 3
+    yield "stuck", down + b"\xd5" + pressed(9000) + WAIT * 9 + b"\x05" + WAIT
+    yield "played", down + b"\x04" + sized(code) + WAIT * 26
+    yield "guarded", down + b"\x04" + sized(code) + WAIT * 4 + b"\xb5" + WAIT * 3
+    yield "cancelled", down + b"\x14" + sized(code) + WAIT * 7 + told(messages.CANCEL, b"", 0x07) + WAIT * 2
+    yield "stopped", down + pressed(3000) + WAIT * 4 + STOP + WAIT + clear + WAIT
+    yield "refused", down + pressed(30_000) + pressed(1000, 900, 100) + moved(5000) + WAIT
+
+
 def session() -> Iterator[tuple[str, bytes]]:
     for message in ANSWERS:
         act = 0x03 if message.number < 0x50 else 0x04
@@ -140,7 +172,7 @@ def _halves(text: str) -> tuple[bytes, bytes]:
     return text[: len(text) // 2].encode(), text[len(text) // 2 :].encode()
 
 
-SEEDS = (decoder, link, core, hand, session, canbus, slcan, socketcand)
+SEEDS = (decoder, link, core, hand, press, session, canbus, slcan, socketcand)
 
 
 def files() -> Iterator[tuple[Path, bytes]]:

@@ -9,7 +9,7 @@ from protocol import frames, messages, secret
 from protocol.canbus import CLASSIC, FD, UNDER_WAY_MAX, Assembler, Segmenter
 from protocol.link import PAST_MAX, QUEUE_MAX, WINDOW, Link
 from tests.fuzz_host import session
-from tests.fuzz_robot import core, hand
+from tests.fuzz_robot import core, hand, press
 from tests.fuzz_script import CRC, SESSION, Script
 from tests.fuzz_terminals import slcan, socketcand
 
@@ -134,6 +134,6 @@ def _assembled(taken) -> None:
 
 
 TARGETS = {
-    "decoder": decoder, "link": link, "core": core, "hand": hand, "session": session, "canbus": canbus, "slcan": slcan,
-    "socketcand": socketcand,
+    "decoder": decoder, "link": link, "core": core, "hand": hand, "press": press, "session": session, "canbus": canbus,
+    "slcan": slcan, "socketcand": socketcand,
 }  # fmt: skip

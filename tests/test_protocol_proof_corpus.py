@@ -3,9 +3,11 @@
 import pytest
 
 from firmware.core import Core
+from firmware.load import Load
 from firmware.orient import Orient
+from firmware.press import Press
 from protocol import messages
-from tests.fuzz_robot import BOTH, FINGER, ROUND, played
+from tests.fuzz_robot import BOTH, FINGER, PUSHER, ROUND, played
 from tests.fuzz_seeds import CORPUS, files
 from tests.fuzz_targets import TARGETS
 
@@ -40,6 +42,11 @@ def test_the_seeds_of_the_corpus_are_those_that_their_file_makes():
         (FINGER, "hand/played", (messages.RUNNING, True)),
         (BOTH, "hand/mixed-gripped", (messages.ARMED, True)),
         (BOTH, "hand/mixed-played", (messages.RUNNING, True)),
+        (PUSHER, "press/pressed", (messages.ARMED, True)),
+        (PUSHER, "press/overloaded", (messages.TRIPPED, False)),
+        (PUSHER, "press/torn", (messages.TRIPPED, False)),
+        (PUSHER, "press/played", (messages.RUNNING, True)),
+        (PUSHER, "press/guarded", (messages.TRIPPED, False)),
     ],
 )
 def test_the_seeds_reach_what_they_are_meant_for(kind, seed, reached):
@@ -57,3 +64,21 @@ def test_the_loop_runs_in_the_seeds_that_are_meant_for_it(seed, event, monkeypat
 
     assert len(turns) > 3
     assert seen == ([event] if event else [])
+
+
+@pytest.mark.parametrize("seed", ["pressed", "played", "raised"])
+def test_the_loop_of_a_press_runs_in_the_seeds_that_are_meant_for_it(seed, monkeypatch):
+    forces = []
+    monkeypatch.setattr(Press, "_rate", lambda self, wanted_mn, passed_ms: forces.append(wanted_mn) or 0)
+
+    played((CORPUS / "press" / seed).read_bytes(), PUSHER)
+
+    assert len(forces) > 100
+    assert max(forces) >= 2000
+
+
+def test_a_press_that_does_not_trip_is_found(monkeypatch):
+    monkeypatch.setattr(Load, "check", lambda self: 0)
+
+    with pytest.raises(AssertionError):
+        played((CORPUS / "press/overloaded").read_bytes(), PUSHER)
