@@ -16,7 +16,7 @@ from tests.jobs import JOBS, job_of, scripts_of
 from tests.trials import ALONE_S, body_of, off_ms
 from tests.witness import Witness
 
-ROBOTS = ("circular", "circular", "circular", "sphere-b", "fingers")
+ROBOTS = ("circular", "circular", "circular", "sphere-b", "fingers", "press")
 LIFE_US = 1_500_000
 
 

@@ -19,6 +19,7 @@ from host.robot import ENDS, Robot
 from host.run import TELEMETRY_MS
 from protocol import messages, program
 from protocol.link import Link
+from tests import limb_jobs
 from tests.witness import profile_text
 
 COOL_MS = 1500
@@ -47,12 +48,12 @@ def play(link: SimLink, script: str, until_s: float) -> None:
 
 
 def give_orders(link: SimLink, draw: Random, until_s: float) -> None:
-    """Fire random coils, or move joints, within every limit that the robot states, with pauses."""
+    """Fire random coils, or drive joints, within every limit that the robot states, with pauses."""
     robot = connected(link)
     robot.arm()
     while link.now_s() < until_s:
         if robot.profile.joint_labels:
-            _turn(robot, draw)
+            limb_jobs.drive(robot, draw)
         else:
             coils, duty, hold_ms = _order(draw, robot.profile)
             robot.fire(robot.profile.named(coils), duty, hold_ms)
@@ -130,29 +131,10 @@ def _order(draw: Random, profile: Profile) -> tuple[int, int, int]:
     return sum(1 << channel for channel in chosen), duty, hold_ms
 
 
-def _way(draw: Random) -> tuple[int, int, int]:
-    """Return where the right finger and the left one are to go, and within which time: a grip, and a swing of both."""
-    grip, swing = draw.randint(-300, 600), draw.randint(-1200, 1200)
-    return swing + grip, swing - grip, draw.randint(150, 1500)
-
-
-def _turn(robot: Robot, draw: Random) -> None:
-    """Send both fingers somewhere, or turn what they hold."""
-    right, left, over_ms = _way(draw)
-    hold_ms = draw.choice((draw.randint(0, 5000), robot.profile.servo.hold_max_ms))
-    for label, target in zip(robot.profile.joint_labels, (right, left), strict=True):
-        robot.move([label], target, over_ms, hold_ms)
-    if draw.random() < 0.4:
-        robot.orient(draw.randint(-500, 500), draw.randint(0, 3000), hold_ms)
-
-
 def _payload(draw: Random, profile: Profile) -> tuple[messages.Message, bytes]:
     """Return a legal order as it goes on the line."""
     if profile.joint_labels:
-        *targets, over_ms = _way(draw)
-        joint, hold_ms = draw.randrange(2), draw.randint(0, 5000)
-        fields = {"target_centi": targets[joint], "over_ms": over_ms, "hold_ms": hold_ms}
-        return messages.MOVE, messages.MOVE.pack(joints=1 << joint, **fields)
+        return limb_jobs.payload(draw, profile)
     coils, duty, hold_ms = _order(draw, profile)
     return messages.FIRE, messages.FIRE.pack(coils=coils, duty_permille=duty, hold_ms=hold_ms)
 
@@ -160,11 +142,7 @@ def _payload(draw: Random, profile: Profile) -> tuple[messages.Message, bytes]:
 def _op(draw: Random, profile: Profile) -> bytes:
     """Return a piece of a program: an order, and most often a pause."""
     if profile.joint_labels:
-        right, left, over_ms = _way(draw)
-        moves = program.move(1, right, over_ms) + program.move(2, left, over_ms) + program.delay(over_ms)
-        time_ms = draw.randint(0, 2000)
-        turn = program.orient(draw.randint(-500, 500), time_ms) + program.delay(time_ms)
-        return moves + draw.choice((b"", turn, program.delay(time_ms)))
+        return limb_jobs.op(draw, profile)
     coils, duty, time_ms = _order(draw, profile)
     fires = (program.fire(coils, duty, time_ms), program.ramp(coils, duty, time_ms, 900, draw.randint(0, time_ms)))
     return draw.choice(fires) + program.delay(draw.choice((0, time_ms, draw.randint(1, 2000))))

@@ -8,6 +8,7 @@ errors let it; then the fault is mended, and the robot must be reachable, clear 
     outcome.wrong                        # sentences, none when all is well
 """
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import cache
 from math import exp, log
@@ -16,7 +17,19 @@ from typing import Any
 
 from hil_sim.bench import Bench
 from hil_sim.faults.happening import Happening, schedule
-from hil_sim.faults.table import BATTERY, CAMERA, IMU, JOINT, LABEL, TABLE, Argument, Fault
+from hil_sim.faults.table import (
+    BATTERY,
+    CAMERA,
+    CELL,
+    CONVERTER,
+    IMU,
+    JOINT,
+    LABEL,
+    LOAD_CELL,
+    TABLE,
+    Argument,
+    Fault,
+)
 from hil_sim.link import BOOTED_US, SimLink, open_link
 from hil_sim.robots.file import RobotFile, load
 from host.errors import SoftrigError
@@ -24,7 +37,8 @@ from host.robot import Robot
 from tests.jobs import JOBS, cleared, job_of, scripts_of
 from tests.witness import Witness
 
-ROBOTS = (("circular", 7), ("sphere-b", 2), ("sphere-a", 1), ("fingers", 2), ("fingers-experiment", 2))
+ROBOTS = (("circular", 7), ("sphere-b", 2), ("sphere-a", 1), ("fingers", 2), ("fingers-experiment", 2), ("press", 4))
+COARSE = "set=block.columns_count:16&set=block.rows_count:8&"
 MOVING = 0.03  # share of the trials whose body moves: each costs many others
 BUSY_US = 4_000_000  # faults come within so long from the start
 SETTLE_US = 2_200_000  # and are given so long to be dealt with
@@ -154,7 +168,12 @@ def off_ms(witness: Witness, at_us: int) -> float | None:
 
 
 def body_of(robot: str, moves: bool = False) -> str:
-    """Return the options of an address that say how a body moves; fingers cost so little that they always do."""
+    """Return the options of an address that say how a body moves.
+
+    Fingers cost so little that they always do; so does the block under a press if it has few triangles.
+    """
+    if _file(robot).cells:
+        return "" if moves else COARSE
     return "" if _file(robot).joints else "body=moving&" if moves else "body=still&set=start.settle_s:0&"
 
 
@@ -166,17 +185,27 @@ def _file(robot: str) -> RobotFile:
 def _has(robot: str, fault: Fault) -> bool:
     """Return whether a robot has what a fault breaks."""
     file = _file(robot)
-    parts = {BATTERY: file.battery is not None, IMU: file.sensors.imu > 0, CAMERA: file.camera is not None}
-    channels = {LABEL: file.labels, JOINT: file.joints}
-    return parts.get(fault.of, True) and bool(channels.get(fault.argument, True))
+    parts = {
+        BATTERY: file.battery is not None,
+        IMU: file.sensors.imu > 0,
+        CAMERA: file.camera is not None,
+        CONVERTER: bool(file.joints),
+        LOAD_CELL: file.load_cell is not None,
+    }
+    return parts.get(fault.of, True) and bool(_named(file).get(fault.argument, True))
+
+
+def _named(file: RobotFile) -> dict[Argument, Sequence[str]]:
+    """Return what may stand after the colon of a fault of one coil, joint or force cell."""
+    return {LABEL: file.labels, JOINT: file.joints, CELL: file.cells}
 
 
 def _argument(draw: Random, argument: Argument, file: RobotFile) -> str:
     """Return what stands after the colon, with it."""
     if argument.words:
         return draw.choice(("", *(f":{word}" for word in argument.words)))
-    if argument in (LABEL, JOINT):
-        return f":{draw.choice(file.labels if argument == LABEL else file.joints)}"
+    if argument in _named(file):
+        return f":{draw.choice(_named(file)[argument])}"
     if not argument.form:
         return ""
     if argument.least < 0:
