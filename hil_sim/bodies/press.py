@@ -84,6 +84,11 @@ class PressPlant:
         return self._felt[1]
 
     @property
+    def cell_kpa(self) -> list[float]:
+        """The same without the rounding of a block without stress."""
+        return [round(1e-3 * pressure, 9) + 0.0 for pressure in self.cell_pa.tolist()]
+
+    @property
     def touching(self) -> bool:
         """Whether the indenter touches the block."""
         return bool(self.state.active.any())
@@ -168,7 +173,7 @@ class PressPlant:
             "dent_mm": 1e3 * max(0.0, -float(self.state.block.u[self.surface, 1].min())),
             "von_mises_peak_kpa": 1e-3 * self.von_mises_peak_pa,
             "strain_peak_percent": 100.0 * self.strain_peak,
-            "cell_kpa": dict(zip(self.places, (1e-3 * self.cell_pa).tolist(), strict=True)),
+            "cell_kpa": dict(zip(self.places, self.cell_kpa, strict=True)),
             "joint_mm": {self.joints[0]: self.screw.at_mm},
             "lost_contact_s": self.lost_contact_s,
             "shape_m": self.shape_m,

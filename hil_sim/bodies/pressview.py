@@ -73,10 +73,10 @@ def fields(plant: "PressPlant") -> dict[str, Any]:
 
 
 def _cells(plant: "PressPlant") -> dict[str, dict[str, Any]]:
-    side_mm, pressures = 1e3 * plant.numbers.side, (1e-3 * plant.cell_pa).tolist()
+    side_mm = 1e3 * plant.numbers.side
     return {
         label: {"centre_mm": [1e3 * x, 1e3 * y], "side_mm": side_mm, "pressure_kpa": pressure}
-        for (label, (x, y)), pressure in zip(plant.places.items(), pressures, strict=True)
+        for (label, (x, y)), pressure in zip(plant.places.items(), plant.cell_kpa, strict=True)
     }
 
 
