@@ -27,7 +27,7 @@ COMMANDS = {
     "arm": "Take a robot's lease, so that it takes orders.",
     "disarm": "Switch everything off and return the lease.",
     "fire": "Heat coils for a limited time.",
-    "move": "Bring joints to a position and hold them there for a limited time.",
+    "move": "Bring joints to a position and hold them for a limited time.",
     "orient": "Turn an object that two joints grip, by what the camera sees.",
     "press": "Press with a force that the robot regulates by its load cell.",
     "stop": "Switch everything off at once, from any state.",
