@@ -35,6 +35,7 @@ from host.limits import (
 
 T = TypeVar("T")
 UNITS = ("deg", "mm")  # of joints
+MASK_BITS = 32
 
 
 class Parts(NamedTuple):
@@ -195,6 +196,7 @@ def read_profile(text: bytes) -> Profile:
         data = json.loads(text)
         channels = tuple(_channel(entry) for entry in data["channels"])
         cells = tuple(_taken(Cell, entry) for entry in data.get("cells", ()))
+        _check_masks(channels, cells)
         return Profile(
             robot=str(data["robot"]),
             supply_mv=int(data["supply_mv"]),
@@ -225,6 +227,16 @@ def _channel(entry: dict[str, Any]) -> Coil | Joint:
     if entry["kind"] == Joint.KIND:
         return _taken(Joint, entry)
     raise ValueError(f"a channel of kind {entry['kind']!r}")
+
+
+def _check_masks(channels: tuple[Coil | Joint, ...], cells: tuple[Cell, ...]) -> None:
+    """Raise ValueError for more than a mask of the wire can hold, and for a label that stands for two."""
+    if max(len(channels), len(cells)) > MASK_BITS:
+        raise ValueError(f"{len(channels)} channels, {len(cells)} cells, at most {MASK_BITS}")
+    labels = [each.label for each in (*channels, *cells)]
+    twice = next((label for label in labels if labels.count(label) > 1), None)
+    if twice is not None:
+        raise ValueError(f"two are called {twice!r}")
 
 
 def _servo(data: dict[str, Any], needed: bool) -> ServoLimits | None:

@@ -10,6 +10,7 @@ from tests.fake_robot import PROFILE
 from tests.test_cli_commands import line, peer  # noqa: F401  (fixtures)
 
 WHOLE = json.loads(PROFILE)
+CELL = {"cell": {"full_pa": 20000}}
 
 
 def with_coil(**changes) -> bytes:
@@ -26,8 +27,11 @@ def with_coil(**changes) -> bytes:
         with_coil(trip_degc=None),
         with_coil(on_max_ms=[1]),
         json.dumps(WHOLE | {"channels": [{**WHOLE["channels"][0], "label": 7}]}).encode(),
+        json.dumps(WHOLE | {"channels": [{**WHOLE["channels"][0], "label": f"K{i}"} for i in range(33)]}).encode(),
+        json.dumps(WHOLE | {"cells": [{"label": f"C{i}", "input": 2} for i in range(33)]} | CELL).encode(),
+        json.dumps(WHOLE | {"cells": [{"label": WHOLE["channels"][0]["label"], "input": 2}]} | CELL).encode(),
     ],
-    ids=["deep", "endless", "word", "nothing", "list", "label"],
+    ids=["deep", "endless", "word", "nothing", "list", "label", "channels", "cells", "twice"],
 )
 def test_a_profile_that_makes_no_sense_is_a_mismatch(text):
     with pytest.raises(Mismatch, match="profile cannot be read"):
