@@ -125,9 +125,19 @@ def test_the_servo_takes_more_current_the_harder_it_presses():
 
 def test_a_bonded_punch_leaves_the_dent_of_its_closed_form():
     """Row R3, 2.226 mm when it is let go at once; here it is lifted until its glue tears, within 2 %."""
-    seen = run(HOLD, f"sim:press?indenter=bonded&set=indenter.pull_off_n:0&{COARSE}")
+    seen = run(HOLD, f"sim:press?indenter=bonded&set=indenter.pull_off_n:0.05&{COARSE}")
 
     assert seen.seen["dent_mm"] == pytest.approx(2.226155, rel=0.02)
+    assert 5.0 < seen.seen["lost_contact_s"] - seen.began_s < 5.2
+
+
+def test_a_punch_presses_harder_with_glue_than_without_by_the_ratio_of_their_closed_forms():
+    glued, free = (run(HOLD, f"sim:press?indenter={kind}&{COARSE}") for kind in ("bonded", "flat"))
+
+    ratio = glued.seen["shape_m"] / free.seen["shape_m"]
+
+    assert ratio > 1.0005
+    assert glued.at(1.9).force_n / free.at(1.9).force_n == pytest.approx(ratio, abs=1e-4)
 
 
 def test_under_a_constant_force_the_block_creeps():

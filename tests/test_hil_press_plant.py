@@ -30,7 +30,8 @@ def test_a_bonded_punch_presses_by_the_law_of_one_dimension_and_its_dent_stays_b
     plant = plant_of("indenter.pull_off_n:0", options="indenter=bonded")
     rows = [(t, plant.state.depth, plant.load_n) for t in drive(plant, 7.0, push_hold_lift)]
     torn = next(number for number, (t, _, force) in enumerate(rows) if t > 5.0 and force == 0.0)
-    depths, forces = (np.array([row[index] for row in rows[1:torn:2]]) for index in (1, 2))
+    pressed = [row for row in rows[1:torn:2] if row[2] > 0.0]  # after each step of the block
+    depths, forces = (np.array([row[index] for row in pressed]) for index in (1, 2))
 
     told = law(depths, 0.01)
 
@@ -38,6 +39,19 @@ def test_a_bonded_punch_presses_by_the_law_of_one_dimension_and_its_dent_stays_b
     freed = (C2 * depths[-1] + C1 * told[-1][1]) / (C2 + C1)
     assert plant.observe()["dent_mm"] == pytest.approx(1e3 * freed, rel=0.01)  # it tore off within one step
     assert plant.observe()["dent_mm"] == pytest.approx(2.226, rel=0.02)
+
+
+def test_the_glue_takes_when_the_punch_first_touches():
+    plant = driven(plant_of("indenter.pull_off_n:50", options="indenter=bonded"), 0.5, -2.0)
+    lifted = plant.load_n, plant.touching, plant.observe()["dent_mm"]
+
+    pressed = driven(plant, 1.0, 1.0)
+    pulled = driven(pressed, 0.3, -0.3).load_n
+
+    assert lifted == (0.0, False, 0.0)
+    assert pressed.touching
+    assert pressed.state.glue is not None
+    assert pulled < 0.0
 
 
 def test_a_glued_punch_pulls_until_it_tears_off_and_then_presses_without_glue():

@@ -2,7 +2,8 @@
 
 Positions are depths: 0 where the indenter's lowest point is level with the undeformed top, positive into the block.
 The block is advanced in steps of its own, 10 ms as it comes; between them the screw moves under the force that it met
-at the last one. A bonded punch that is pulled with more than its glue holds tears off and then presses without it.
+at the last one. The glue of a bonded punch takes when that is first pressed on the block (ASSUMED: by 0.01 mm); pulled
+with more than it holds it tears off, and the punch presses without it from then on.
 
     plant = PressPlant(load("press"))
     plant.command([4.0])
@@ -29,6 +30,8 @@ from hil_sim.physics.compiled import Array
 from hil_sim.robots.file import RobotFile
 from hil_sim.soundness import OutOfModel
 
+TACK = 1e-5  # how deep a bonded punch is pressed when its glue takes [m]
+
 
 class PressPlant:
     """Axis, indenter and block of one robot, at rest at time 0; a function of the commands and nothing else."""
@@ -42,7 +45,7 @@ class PressPlant:
         self.joint_unit, self.object_deg = "mm", None
         self.numbers = robot.press
         self.press = press_of(self.numbers)
-        self.state = self.press.start()
+        self.state = self._in_the_air(0.0)
         self.surface = surface_of(self.press.block.mesh)
         self.places = places_of(self.numbers, self.press.block.mesh)
         self.cells = cells_at(self.places, self.numbers.side, self.press.block.mesh)
@@ -54,7 +57,7 @@ class PressPlant:
         self._now_us = 0
         self._step_us = round(1e6 * self.numbers.dt)
         self._felt: tuple[Pressed, Array] | None = None
-        self.press.advance(self.state, self.numbers.dt, depth=0.0)  # what it needs is compiled and factored here
+        self.press.advance(self.press.start(), self.numbers.dt, depth=0.0)  # compiles and factors what it needs
 
     @property
     def t_s(self) -> float:
@@ -124,11 +127,11 @@ class PressPlant:
     def _press(self) -> None:
         """Advance the block by one of its steps."""
         before, at = self.state, 1e-3 * self.screw.at_mm
-        if self._untouched(at):
-            self.state = before._replace(depth=at)
+        if self._virgin and at <= (TACK if self.press.indenter.bonded else 0.0):
+            self.state = self._in_the_air(at)
             return
         try:
-            self.state = self._driven(at)
+            self.state = self._driven(self.press.start() if self._virgin else before, at)
         except BlockError as error:
             told = f"the press left what its model is valid for at {self.t_s:.2f} s, {error}"
             raise OutOfModel(told) from error
@@ -138,9 +141,9 @@ class PressPlant:
             self.lost_contact_s = self.t_s
         self._remember()
 
-    def _driven(self, at: float) -> Pressed:
+    def _driven(self, before: Pressed, at: float) -> Pressed:
         """Return press and block after a step to there [m], or to where the servo has the force to get."""
-        numbers, before = self.numbers, self.state
+        numbers = self.numbers
         there = follow(self.press, before, numbers.dt, at, numbers.backlash, numbers.tool_mass * numbers.g)
         if there.depth <= before.depth or there.force <= numbers.screw.stall_n:
             return there
@@ -150,10 +153,15 @@ class PressPlant:
         self.screw.at_mm = 1e3 * (there.depth + numbers.backlash)
         return there
 
-    def _untouched(self, at: float) -> bool:
-        """Return whether nothing has happened to the block yet, nor does so with the screw there [m]."""
-        state = self.state
-        return state.block.t == 0.0 and (at <= 0.0 if state.glue is None else at == 0.0)
+    @property
+    def _virgin(self) -> bool:
+        """Whether nothing has happened to the block yet."""
+        return self.state.block.t == 0.0
+
+    def _in_the_air(self, at: float) -> Pressed:
+        """Return press and block before they first touch, with the press there [m]."""
+        state = self.press.start()
+        return state._replace(depth=at, active=np.zeros_like(state.active))
 
     def _remember(self) -> None:
         block = self.state.block
