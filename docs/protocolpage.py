@@ -125,7 +125,8 @@ def _session(table: Table) -> dict[str, object]:
     if set(STATES) != set(messages.STATES):
         raise ValueError("the page does not say what each state is")
     states = [(str(number), name, STATES[name]) for number, name in enumerate(messages.STATES)]
-    units = {place.name.rpartition("_")[2]: place for row in rows() for place in row.fields if place.unit}
+    places = [*(place for row in rows() for place in row.fields), *variables()]
+    units = {place.name.rpartition("_")[2]: place for place in places if place.unit}
     return {
         "states": table(("", "state", ""), states),
         "tripped": f"{messages.TRIPPED} (tripped)",

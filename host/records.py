@@ -213,13 +213,19 @@ def channel_names(mask: int, labels: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def ended(labels: tuple[str, ...], parts: Parts) -> str:
-    """Return in words what was driven when the stop came: "coils A B were on and are off now"."""
+    """Return in words what was driven when the stop came: "coils A B were on and are off now".
+
+    An axis, unlike a joint that turns, stays where it is when it is limp.
+    """
     joints = [label for label in labels if label in parts.joints]
     coils = [label for label in labels if label not in parts.joints]
     if not labels:
         return "no joint was driven" if parts.joints and not parts.coils else "no coil was on"
     told = [f"coils {' '.join(coils)} were on and are off now"] if coils else []
-    return " and ".join([*told, *([f"joints {' '.join(joints)} were driven and are limp now"] if joints else [])])
+    if joints:
+        where = " where they stand" if parts.unit == "mm" else ""  # a screw holds them
+        told.append(f"joints {' '.join(joints)} were driven and are limp now{where}")
+    return " and ".join(told)
 
 
 def as_json(record: Any) -> dict[str, Any]:

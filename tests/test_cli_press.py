@@ -136,7 +136,7 @@ def test_ctrl_c_in_a_press_stops_the_robot_and_names_the_joint(softrig, peer, li
     told = softrig("press", "5N", "--for", "9s")
 
     assert told.status == 130
-    assert "stop acknowledged, joints P were driven and are limp now; the robot is tripped (F01)" in told.err
+    assert "stop acknowledged, joints P were driven and are limp now where they stand; the robot is tripped (F01)" in told.err
     assert peer.stops > 0
 
 

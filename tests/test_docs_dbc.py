@@ -157,3 +157,12 @@ def test_the_database_can_be_written_again(bus):
     again = cantools.database.load(io.StringIO(bus.as_dbc_string()), strict=True)
 
     assert {message.name for message in again.messages} == {message.name for message in bus.messages}
+
+
+def test_a_force_is_told_in_its_unit(bus):
+    payload = messages.PRESS.pack(target_mn=5000, over_ms=1000, time_ms=5000, hold_ms=1000)
+
+    name, told = read(bus, segments(messages.PRESS, payload, from_robot=False)[0])
+
+    assert (name, told["target_mn"]) == ("press", 5000)
+    assert bus.get_message_by_name("press").get_signal_by_name("target_mn").unit == "mN"

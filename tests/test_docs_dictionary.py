@@ -80,7 +80,15 @@ def test_a_field_without_a_range_has_that_of_its_type(letter, low, high):
 
 @pytest.mark.parametrize(
     ("name", "unit", "scale"),
-    [("now_ms", "ms", 1), ("board_decidegc", "degC", 0.1), ("seq", "", 1), ("duty_permille", "permille", 1)],
+    [
+        ("now_ms", "ms", 1),
+        ("board_decidegc", "degC", 0.1),
+        ("seq", "", 1),
+        ("duty_permille", "permille", 1),
+        ("target_mn", "mN", 1),
+        ("cell_pa", "Pa", 1),
+        ("joint_centi", "deg or mm", 0.01),
+    ],  # fmt: skip
 )
 def test_a_unit_is_the_end_of_the_name(name, unit, scale):
     found = definitions.Place(name, "H", 0, "", None)

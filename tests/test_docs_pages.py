@@ -39,6 +39,17 @@ def test_a_page_that_is_not_as_its_table_is_named(generate, tmp_path, monkeypatc
     assert capsys.readouterr().err == "docs/codes.md is out of date: make docs\n"
 
 
+def test_the_page_of_limits_counts_joints_in_their_own_unit_and_names_force_cells(generate):
+    page = generate.limits_page()
+    fingers, press = (page[page.index(f"## {name}\n") :].split("\n## ")[0] for name in ("fingers", "press"))
+
+    assert "| servo.most_centi | 3000 | 0.01 deg |" in fingers
+    assert "force cell" not in fingers
+    assert "| servo.slew_centi_per_s | 1000 | 0.01 mm/s |" in press
+    assert "| load.trip_mn | 20000 | mN |" in press
+    assert "| 5 | C6 | AIN7 |" in press
+
+
 def test_the_worked_example_on_the_protocol_page_is_the_order_that_it_says(generate):
     page = generate.protocol_page()
     wire = re.search(r"^\| on the wire \| `([0-9a-f ]+)` \|$", page, re.MULTILINE)[1]
