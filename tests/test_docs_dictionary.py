@@ -88,7 +88,7 @@ def test_a_field_without_a_range_has_that_of_its_type(letter, low, high):
         ("target_mn", "mN", 1),
         ("cell_pa", "Pa", 1),
         ("joint_centi", "deg or mm", 0.01),
-    ],  # fmt: skip
+    ],
 )
 def test_a_unit_is_the_end_of_the_name(name, unit, scale):
     found = definitions.Place(name, "H", 0, "", None)
