@@ -1,6 +1,6 @@
-"""What stands in a robot's profile: its channels, of one kind or the other, and what its firmware allows them.
+"""What stands in a robot's profile: its channels, of one kind or the other, its cells, and what its firmware allows.
 
-Values keep the units of their names; `profile.py` reads them.
+Values keep the units of their names; `sections.py` reads them.
 """
 
 from __future__ import annotations
@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from protocol import program
+
+UNITS = ("deg", "mm")  # of joints
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,7 +23,7 @@ from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
 from host.errors import BadRequest
-from host.profile import UNITS
+from host.limits import UNITS
 from host.recording import Recording
 from host.records import PER_CELL, PER_COIL, PER_JOINT, Event, Telemetry, column
 

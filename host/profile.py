@@ -12,9 +12,9 @@ from __future__ import annotations
 import json
 from binascii import crc32
 from collections.abc import Iterable
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple, TypeVar, get_type_hints
+from typing import NamedTuple
 
 from host.errors import BadRequest, Mismatch
 from host.limits import (
@@ -32,9 +32,8 @@ from host.limits import (
     SessionLimits,
     SupplyLimits,
 )
+from host.sections import channel, optional, section, servo
 
-T = TypeVar("T")
-UNITS = ("deg", "mm")  # of joints
 MASK_BITS = 32
 
 
@@ -194,39 +193,30 @@ def read_profile(text: bytes) -> Profile:
     """Return the profile that stands in `text`; Mismatch when a value that this version needs is not there."""
     try:
         data = json.loads(text)
-        channels = tuple(_channel(entry) for entry in data["channels"])
-        cells = tuple(_taken(Cell, entry) for entry in data.get("cells", ()))
+        channels = tuple(channel(entry) for entry in data["channels"])
+        cells = tuple(section(Cell, entry) for entry in data.get("cells", ()))
         _check_masks(channels, cells)
         return Profile(
             robot=str(data["robot"]),
             supply_mv=int(data["supply_mv"]),
             channels=channels,
             groups={name: tuple(labels.split()) for name, labels in data["groups"]},
-            coil_limits=_needed(CoilLimits, data, "coil", any(isinstance(each, Coil) for each in channels)),
-            servo_limits=_servo(data, any(isinstance(each, Joint) for each in channels)),
-            supply=_taken(SupplyLimits, data["supply"]),
-            session=_taken(SessionLimits, data["session"]),
-            program=_taken(ProgramLimits, data["program"]),
+            coil_limits=optional(CoilLimits, data, "coil", any(isinstance(each, Coil) for each in channels)),
+            servo_limits=servo(data, any(isinstance(each, Joint) for each in channels)),
+            supply=section(SupplyLimits, data["supply"]),
+            session=section(SessionLimits, data["session"]),
+            program=section(ProgramLimits, data["program"]),
             crc=crc32(text),
             imu=data.get("imu"),
-            camera=_needed(CameraLimits, data, "camera"),
-            orient=_needed(OrientLimits, data, "orient"),
-            load=_needed(LoadLimits, data, "load", "press" in data),
-            press=_needed(PressLimits, data, "press"),
+            camera=optional(CameraLimits, data, "camera"),
+            orient=optional(OrientLimits, data, "orient"),
+            load=optional(LoadLimits, data, "load", "press" in data),
+            press=optional(PressLimits, data, "press"),
             cells=cells,
-            cell=_needed(CellLimits, data, "cell", bool(cells)),
+            cell=optional(CellLimits, data, "cell", bool(cells)),
         )
     except (KeyError, TypeError, ValueError, AttributeError, OverflowError, RecursionError) as error:
         raise Mismatch(f"the robot's profile cannot be read ({error}): its firmware is of another version") from error
-
-
-def _channel(entry: dict[str, Any]) -> Coil | Joint:
-    """Return a channel of one of the kinds that there are."""
-    if entry["kind"] == Coil.KIND:
-        return _taken(Coil, entry)
-    if entry["kind"] == Joint.KIND:
-        return _taken(Joint, entry)
-    raise ValueError(f"a channel of kind {entry['kind']!r}")
 
 
 def _check_masks(channels: tuple[Coil | Joint, ...], cells: tuple[Cell, ...]) -> None:
@@ -237,25 +227,3 @@ def _check_masks(channels: tuple[Coil | Joint, ...], cells: tuple[Cell, ...]) ->
     twice = next((label for label in labels if labels.count(label) > 1), None)
     if twice is not None:
         raise ValueError(f"two are called {twice!r}")
-
-
-def _servo(data: dict[str, Any], needed: bool) -> ServoLimits | None:
-    """Return the limits of the joints, None when there are none and none are needed."""
-    servo = _needed(ServoLimits, data, "servo", needed)
-    if servo is not None and servo.unit not in UNITS:
-        raise ValueError(f"joints that count in {servo.unit!r}")
-    return servo
-
-
-def _needed(kind: type[T], data: dict[str, Any], name: str, needed: bool = False) -> T | None:
-    """Return the section of that name, None when there is none and none is needed."""
-    return _taken(kind, data[name]) if needed or name in data else None
-
-
-def _taken(kind: type[T], data: dict[str, Any]) -> T:
-    """Return a `kind` made of the entries it knows; a newer robot may send more."""
-    names = [field.name for field in fields(kind) if field.name in data or field.default is MISSING]  # type: ignore[arg-type]
-    for name, wanted in get_type_hints(kind).items():
-        if name in names and type(data[name]) is not wanted:
-            raise TypeError(f"{name} is {data[name]!r}")
-    return kind(**{name: data[name] for name in names})
