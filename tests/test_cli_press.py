@@ -59,6 +59,7 @@ def test_press_tells_the_same_as_json(softrig, line):
     assert told == {
         "target_n": 0.5,
         "reached_n": 0.5,
+        "most_mm": 10.0,
         "load_peak_n": 0.5,
         "cell_peak_kpa": dict.fromkeys(AXIS.cell_labels, 0.5),
         "over_ms": 100,
@@ -74,6 +75,12 @@ def test_the_force_that_was_reached_is_the_one_before_the_axis_is_only_held(soft
     told = json.loads(softrig("press", "5N", "--for", "1s", "--hold", "3s", "--json").out)
 
     assert (told["reached_n"], told["load_peak_n"]) == (5.0, 5.0)
+
+
+def test_an_axis_at_the_end_of_its_range_is_told(softrig, line):
+    told = softrig("press", "10N", "--for", "1s").out  # this robot gives way 1 mm for each newton
+
+    assert "P is at the end of its range, 10 mm: it presses no harder\n" in told
 
 
 @pytest.mark.parametrize(("text", "mn"), [("5", 5000), ("5N", 5000), ("5.25 N", 5250), ("250mN", 250), ("0N", 0)])
@@ -136,7 +143,10 @@ def test_ctrl_c_in_a_press_stops_the_robot_and_names_the_joint(softrig, peer, li
     told = softrig("press", "5N", "--for", "9s")
 
     assert told.status == 130
-    assert "stop acknowledged, joints P were driven and are limp now where they stand; the robot is tripped (F01)" in told.err
+    assert (
+        "stop acknowledged, joints P were driven and are limp now where they stand; the robot is tripped (F01)"
+        in told.err
+    )
     assert peer.stops > 0
 
 

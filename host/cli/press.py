@@ -17,6 +17,8 @@ from host.errors import BadRequest, Refused
 from host.records import Telemetry
 from protocol import codes
 
+NEAR = 0.05  # mm or deg of the end of the range: the dead band of a servo
+
 
 @click.command("press")
 @click.argument("force", type=force_mn, metavar="FORCE")
@@ -49,7 +51,9 @@ def command(force: int, robot: str, over: int, lasting: int, hold: int, as_json:
         face.disarm()
     joints, felt = motion.of(profile.joint_labels), motion.felt()
     times = {"over_ms": over, "for_ms": lasting, "hold_ms": hold}
-    fields = {"target_n": force / 1000, "reached_n": regulated.load_n, **felt, **times, "joints": joints}
+    told = {"target_n": force / 1000, "reached_n": regulated.load_n}
+    most = {f"most_{profile.unit}": profile.servo.most_centi / 100}  # how far down the axis may go
+    fields = {**told, **felt, **times, **most, "joints": joints}
     emit(as_json, fields, _lines(fields, profile.unit))
 
 
@@ -74,5 +78,8 @@ def _lines(fields: dict[str, Any], unit: str) -> Iterator[str]:
     yield f"pressing {told}, told {fields['target_n']:g} N"
     yield from felt_lines(fields)
     yield from lines(fields["joints"], unit)
-    for label in fields["joints"]:
+    most = fields[f"most_{unit}"]
+    for label, joint in fields["joints"].items():
+        if (joint[f"reached_{unit}"] or 0) > most - NEAR:
+            yield f"{label} is at the end of its range, {most:g} {unit}: it presses no harder"
         yield f"{label} stays where it is: `softrig move {label} --to 0{unit}` lifts it"
