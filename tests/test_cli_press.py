@@ -77,6 +77,15 @@ def test_the_force_that_was_reached_is_the_one_before_the_axis_is_only_held(soft
     assert (told["reached_n"], told["load_peak_n"]) == (5.0, 5.0)
 
 
+def test_an_axis_that_touches_nothing_is_told(softrig, peer, line):
+    line.at[1500] = lambda: setattr(peer, "load_mn", 8)
+
+    told = softrig("press", "5N", "--for", "1s").out
+
+    assert "P touches nothing: bring it closer with `softrig move P`, or regulate for longer\n" in told
+    assert LIFT not in told
+
+
 def test_an_axis_at_the_end_of_its_range_is_told(softrig, line):
     told = softrig("press", "10N", "--for", "1s").out  # this robot gives way 1 mm for each newton
 

@@ -54,7 +54,7 @@ def command(force: int, robot: str, over: int, lasting: int, hold: int, as_json:
     told = {"target_n": force / 1000, "reached_n": regulated.load_n}
     most = {f"most_{profile.unit}": profile.servo.most_centi / 100}  # how far down the axis may go
     fields = {**told, **felt, **times, **most, "joints": joints}
-    emit(as_json, fields, _lines(fields, profile.unit))
+    emit(as_json, fields, _lines(fields, profile.unit, profile.press.touch_mn / 1000))
 
 
 @dataclass(slots=True)
@@ -72,14 +72,16 @@ class _Regulated:
             self.load_n = record.load_n
 
 
-def _lines(fields: dict[str, Any], unit: str) -> Iterator[str]:
-    reached = fields["reached_n"]
+def _lines(fields: dict[str, Any], unit: str, touch_n: float) -> Iterator[str]:
+    reached, most = fields["reached_n"], fields[f"most_{unit}"]
     told = "no telemetry" if reached is None else f"at {reached:.2f} N"
     yield f"pressing {told}, told {fields['target_n']:g} N"
     yield from felt_lines(fields)
     yield from lines(fields["joints"], unit)
-    most = fields[f"most_{unit}"]
     for label, joint in fields["joints"].items():
         if (joint[f"reached_{unit}"] or 0) > most - NEAR:
             yield f"{label} is at the end of its range, {most:g} {unit}: it presses no harder"
-        yield f"{label} stays where it is: `softrig move {label} --to 0{unit}` lifts it"
+        if reached is not None and reached <= touch_n:
+            yield f"{label} touches nothing: bring it closer with `softrig move {label}`, or regulate for longer"
+        else:
+            yield f"{label} stays where it is: `softrig move {label} --to 0{unit}` lifts it"
