@@ -117,3 +117,20 @@ def test_a_press_through_the_block_ends_the_run_with_one_line():
     assert result.exit_code == 7
     assert "the press left what its model is valid for at" in result.stderr.splitlines()[-1]
     assert "the indenter meets what the block stands on at 0.006 m" in result.stderr.splitlines()[-1]
+
+
+def test_both_worlds_hear_the_same_noise_and_the_same_play():
+    options = "set=load_cell.noise_n:0.05&set=cells.noise_pa:50&set=axis.backlash_mm:0.2"
+
+    traces = {pressed(f"{options}&world={world}")[0].bench.trace_sha256() for world in ("cpython", "micropython")}
+
+    assert len(traces) == 1
+
+
+def test_a_bench_shows_what_is_inside_a_block_and_nothing_of_other_bodies():
+    rig, _ = pressed()
+    fields = rig.bench.fields()
+
+    assert fields["displacement_mm"][:, 1].min() == pytest.approx(-rig.bench.observe()["dent_mm"])
+    assert fields["stress_kpa"].shape == (len(fields["triangles"]), 4)
+    assert HilRig("sim:fingers").bench.fields() is None
