@@ -9,6 +9,7 @@ from hil_sim.address import AddressError, parse
 from hil_sim.assembly import assemble
 from hil_sim.physics.block.law import fastest
 from hil_sim.robots.file import FOLDER, PROFILES, RobotFileError, load
+from hil_sim.robots.keys import features_of, keys_of
 from tests.robot_mistakes import refusal, told_of
 
 TEXT = (FOLDER / "press.toml").read_text(encoding="utf-8")
@@ -202,3 +203,14 @@ def test_a_mesh_that_cannot_be_read_is_told_by_its_path(tmp_path):
 
     with pytest.raises(RobotFileError, match=r"the mesh of mine, .*block.msh: there is no such file"):
         assemble(parse(f"sim:{path}"))
+
+
+@pytest.mark.parametrize("key", keys_of(features_of("press")), ids=lambda key: key.name)
+def test_every_number_can_be_set_from_an_address(key):
+    least, most = max(key.least, -1e3), min(key.most, 1e3)
+    value = float(round(least + (most - least) / 3)) if key.multiple else least + (most - least) / 3
+    pair = {"material.youngs_modulus_2_kpa": "1", "material.viscosity_2_kpa_s": "1"} if "_2_" in key.name else {}
+
+    robot = load("press", {**pair, **parse(f"sim:press?set={key.name}:{value}").overrides})
+
+    assert [entry.value for entry in robot.entries if entry.name == key.name] == [value]
