@@ -20,7 +20,7 @@ from host.view.instants import Numbers
 NAMES = ("push", "end of the hold", "just after release", "long after")
 FULL = 0.99  # of the greatest force: the push is over
 APART_MS = 10  # scene and slice of one instant
-RISEN_MM = 0.05  # above where it was deepest: the hold is over
+RISEN_MM = 0.01  # above where it was deepest: the hold is over
 
 
 class Press(NamedTuple):
