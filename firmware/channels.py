@@ -13,6 +13,7 @@ from protocol import codes
 FULL_PERMILLE = 1000
 UNKNOWN = 0xFFFF  # no duty: what the chip holds must be written anew
 NONE = -1
+FIGURE_MAX = 0x7FFFFFFF  # that the fields of a refusal, of an event and of a fault's record hold
 
 
 class Refused(Exception):
@@ -22,8 +23,8 @@ class Refused(Exception):
         super().__init__(code)
         self.code = code
         self.channel = channel
-        self.value = value
-        self.limit = limit
+        self.value = min(value, FIGURE_MAX)
+        self.limit = min(limit, FIGURE_MAX)
 
 
 class Channels:

@@ -9,7 +9,6 @@ from firmware.upload import Upload
 from protocol import codes, messages, variables
 
 NOT, ON_SYNC = -1, -2
-FIGURE_MAX = 0x7FFFFFFF  # that the fields of a refusal hold
 
 
 class Commands:
@@ -286,7 +285,7 @@ class Commands:
     def _refuse(self, request: int, refused: Refused) -> None:
         self.answer(
             messages.REFUSED, request=request, code=refused.code, channel=refused.channel,
-            value=min(refused.value, FIGURE_MAX), limit=min(refused.limit, FIGURE_MAX),
+            value=refused.value, limit=refused.limit,
         )  # fmt: skip
 
     def answer(self, message, **fields) -> None:

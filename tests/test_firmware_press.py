@@ -173,3 +173,13 @@ def test_a_guard_on_the_force_trips(touching):
 
     assert touching.events("tripped")[-1].code == codes.GUARD
     assert touching.axis.force_n < 3.0
+
+
+def test_a_program_that_would_press_for_weeks_trips_and_its_figure_fits_the_record(armed):
+    code = program.press(1000, 0, 0xFFFFFFFF) + program.halt()
+
+    run_program(armed, code)
+    armed.run(50)
+
+    trip = armed.events("tripped")[-1]
+    assert (trip.code, trip.value) == (codes.REFUSED_STEP, 0x7FFFFFFF)
