@@ -207,6 +207,24 @@ def test_a_block_that_nobody_saw_inside_is_drawn_by_its_surface(pressed, tmp_pat
     assert {"a", "b", "load cell"} <= set(texts(tmp_path / "a.svg"))
 
 
+def test_a_press_without_a_load_cell_has_the_curves_that_it_has(pressed, tmp_path):
+    bare = replace(pressed, telemetry=[replace(row, load_n=None) for row in pressed.telemetry])
+
+    draw_run(bare, tmp_path / "a.svg")
+
+    assert {"C1", "P, measured"} <= set(texts(tmp_path / "a.svg"))
+    assert "load cell" not in texts(tmp_path / "a.svg")
+
+
+def test_fingers_with_a_load_cell_are_drawn_as_fingers(tmp_path):
+    pinch = recorded_pinch()
+    loaded = replace(pinch, telemetry=[replace(row, load_n=1.0) for row in pinch.telemetry])
+
+    draw_run(loaded, tmp_path / "a.svg")
+
+    assert {"R", "L", "joints [°]"} <= set(texts(tmp_path / "a.svg"))
+
+
 def test_a_press_without_a_hold_is_shown_with_the_block_before_it():
     twice = recorded_press(TWICE[2:])
 

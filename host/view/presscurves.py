@@ -18,9 +18,10 @@ DASHES = ("-", (0, (4, 1.5)))  # of every other cell: those to the left and to t
 
 
 def presses(recording: Recording) -> bool:
-    """Return whether the robot told of a load cell, or of force cells."""
+    """Return whether the robot told of a load cell or of force cells, and whoever saw it of a block, if anybody did."""
     first = recording.telemetry[0]
-    return first.load_n is not None or bool(first.cell_kpa)
+    felt = first.load_n is not None or bool(first.cell_kpa)
+    return felt and (not recording.scenes or "indenter" in recording.scenes[0])
 
 
 def draw_force(axes: Axes, recording: Recording) -> None:

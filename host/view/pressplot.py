@@ -48,7 +48,8 @@ def press_figure(recording: Recording) -> Figure:
     box = strip_box(recording, shown) if shown else None
     each = (PAGE_MM - LEFT_MM - RIGHT_MM) / SHOWN
     strip_mm = height_of(box, each) + WORDS_MM + GAP_MM + NAME_MM if box else 0.0
-    panels: list[Panel] = [FORCE, DEPTH, *[PRESSURE] * bool(recording.cells), CURRENT]
+    loaded = recording.telemetry[0].load_n is not None
+    panels: list[Panel] = [*[FORCE] * loaded, DEPTH, *[PRESSURE] * bool(recording.cells), CURRENT]
     curves_mm = NAME_MM + sum(mm + GAP_MM for _, mm in panels) - GAP_MM
     sheet = Sheet(TOP_MM + strip_mm + curves_mm + BOTTOM_MM, recording.title)
     if box:
