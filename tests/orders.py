@@ -57,7 +57,7 @@ class Ledger:
         self._outlives = False
         self._armed_us = now_us
         self._upload = bytearray()
-        self._may_outlive = self._doubtful = False
+        self._may_outlive = self._one_may = self._doubtful = False
         self._stop = frames.StopFinder()
         self._talks = [Talk(self._seed, 0)]  # any of them may be in force: the robot need not have said so yet
         self._uploader = self._talks[0]
@@ -130,13 +130,30 @@ class Ledger:
         self._upload, self._doubtful, self._uploader = bytearray(), False, talk
         try:
             self._may_outlive = bool(program.read_header(header).flags & program.OUTLIVES_HOST)
+            self._one_may = self._one_may or self._may_outlive
         except program.BadProgram:
             self._doubtful = True
 
+    def _budgets(self) -> dict[int, float]:
+        """Return for how long the program may have each channel on; nothing, which is no limit, when it is none."""
+        try:
+            return dict(budgets(bytes(self._upload), self._profile.servo_limits))
+        except (IndexError, KeyError, ValueError):
+            return {}  # pieces of it were not overheard
+
     def _cancel(self, count: int, now_us: int) -> None:
+        """End what programs say of coils; their joints stand where they are, up to the ends of their orders."""
         for claim in self.claims[:count]:
             if claim.of_program and claim.limited:
-                claim.end(now_us)
+                self._part(claim, claim.mask & ~self._joints, now_us)
+
+    def _part(self, claim: Claim, ends: int, now_us: int) -> None:
+        """End what a claim says of some channels."""
+        goes_on = claim.mask & ~ends
+        if goes_on:
+            self._add(Claim(goes_on, claim.from_us, claim.until_us, claim.budget_us, claim.of_program), now_us)
+        claim.mask &= ends
+        claim.end(now_us)
 
     def _answered(
         self, message: messages.Message, claim: Claim | None, order: object, count: int, ok: bool, now_us: int
@@ -158,9 +175,12 @@ class Ledger:
             self._lease_us = 1000.0 * (order.lease_ms or self._profile.session.lease_ms)
         elif message in DRIVING:
             self._replaced(claim.mask if claim else order.coils, claim, count, now_us)
-        elif message is messages.START and not self._doubtful:
+        elif message is messages.START and self._doubtful:
+            self._outlives = self._one_may  # an older program may have been started
+            self._live(now_us)
+        elif message is messages.START:
             self._outlives = self._may_outlive
-            claim.budget_us = dict(budgets(bytes(self._upload), self._profile.servo_limits))
+            claim.budget_us = self._budgets()
             self._live(now_us)
 
     def _replaced(self, coils: int, by: Claim | None, count: int, now_us: int) -> None:
@@ -168,11 +188,7 @@ class Ledger:
         newer = self.claims[count:]
         for claim in self._current:
             if claim is not by and claim.mask & coils and not any(claim is each for each in newer):
-                if claim.mask & ~coils:
-                    rest = Claim(claim.mask & ~coils, claim.from_us, claim.until_us, claim.budget_us, claim.of_program)
-                    self._add(rest, now_us)
-                claim.mask &= coils
-                claim.end(now_us)
+                self._part(claim, coils, now_us)
 
     def _ended(self, event: int, now_us: int) -> None:
         """Take the robot's word that it is off, unless it may be an old one: the robot was armed since."""

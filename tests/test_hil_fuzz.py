@@ -5,6 +5,7 @@ Beside the seeds here, some hundred others were run; each virtual second costs s
 
 import random
 from binascii import crc32
+from collections.abc import Callable
 
 import pytest
 
@@ -15,21 +16,24 @@ from host.robot import Robot
 from protocol import frames, messages, program
 from protocol.link import Link
 from tests.fake_robot import LABELS, PROFILE
+from tests.witness import profile_text
 
-SEED = crc32(dictionary_of(PROFILE))
 ROBOT = crc32(PROFILE)
 BYTE_S = 10 / 115_200
 TWO_STEPS_S = 0.010
 TOO_HOT_DEGC = 130.0
+Piece = Callable[[random.Random], bytes]
 
 
 class Attacker:
     """A host that knows the wire and means no good; what it has sent is its ammunition."""
 
-    def __init__(self, seed: int) -> None:
+    def __init__(self, seed: int, address: str = "sim:circular") -> None:
         self.random = random.Random(seed)
-        self.line = open_link("sim:circular")
+        self.line = open_link(address)
         self.bench = self.line.bench
+        text = profile_text(self.bench)
+        self._seed, self._robot = crc32(dictionary_of(text)), crc32(text)
         self._sent = [b"\x00"]
         self._idle_s = 0.0
         self._acts = (
@@ -41,7 +45,11 @@ class Attacker:
     def act(self) -> None:
         """Do one bad thing, and let some time pass."""
         self.random.choice(self._acts)()
-        data = self.line.read(self.line.now_s() + self.random.choice((0.001, 0.005, 0.02, 0.1)))
+        self.listen(self.random.choice((0.001, 0.005, 0.02, 0.1)))
+
+    def listen(self, seconds: float) -> None:
+        """Hear the robot for so long."""
+        data = self.line.read(self.line.now_s() + seconds)
         self._link.receive(data, round(self.line.now_s() * 1000))
 
     def stop(self) -> None:
@@ -66,7 +74,7 @@ class Attacker:
     def _anew(self) -> None:
         self._link = Link()
         self._session = self.random.randrange(1 << 32)
-        self._link.begin(SEED, self._session)
+        self._link.begin(self._seed, self._session)
         self._say(messages.HELLO, version=frames.VERSION, session=self._session, attach=0, nonce_a=0, nonce_b=0)
 
     def _noise(self) -> None:
@@ -97,31 +105,37 @@ class Attacker:
 
     def _seal(self, kind: int, payload: bytes) -> None:
         seq, ack, flags = (self.random.randrange(256) for _ in range(3))
-        seed = SEED if frames.is_open(kind) else frames.session_seed(SEED, self._session)
+        seed = self._seed if frames.is_open(kind) else frames.session_seed(self._seed, self._session)
         flags &= frames.RELIABLE | frames.SEALED
         self._write(frames.encode(frames.seal(kind, seq, ack, payload, seed, flags)))
 
     def _pieces(self) -> None:
         offset, size = self.random.randrange(1 << 16), self.random.randrange(200)
-        self._say(messages.PROGRAM, header=program.header(bytes(self.random.choice((1, 4096, 4097))), ROBOT))
+        self._say(messages.PROGRAM, header=program.header(bytes(self.random.choice((1, 4096, 4097))), self._robot))
         self._say(messages.CODE, offset=offset, code=self.random.randbytes(size))
         self._say(messages.START, at_ms=0)
 
     def _program(self) -> None:
-        code = program_of(self.random)
+        code = self._code()
         self._armed()
-        self._say(messages.PROGRAM, header=program.header(code, ROBOT, self.random.randrange(2)))
+        self._say(messages.PROGRAM, header=program.header(code, self._robot, self.random.randrange(2)))
         for at in range(0, len(code), 192):
             self._say(messages.CODE, offset=at, code=code[at : at + 192])
         self._say(messages.START, at_ms=0)
 
+    def _code(self) -> bytes:
+        return program_of(self.random)
+
     def _orders(self) -> None:
         self._armed()
         for _ in range(self.random.randrange(5)):
-            coils = self.random.choice((self.random.randrange(1 << 32), 1 << self.random.randrange(8)))
-            duty = self.random.choice((1000, self.random.randrange(1 << 16)))
-            hold = self.random.choice((self.random.randrange(1 << 16), self.random.randrange(10_000)))
-            self._say(messages.FIRE, coils=coils, duty_permille=duty, hold_ms=hold)
+            self._order()
+
+    def _order(self) -> None:
+        coils = self.random.choice((self.random.randrange(1 << 32), 1 << self.random.randrange(8)))
+        duty = self.random.choice((1000, self.random.randrange(1 << 16)))
+        hold = self.random.choice((self.random.randrange(1 << 16), self.random.randrange(10_000)))
+        self._say(messages.FIRE, coils=coils, duty_permille=duty, hold_ms=hold)
 
     def _armed(self) -> None:
         self._say(messages.CLEAR)
@@ -139,26 +153,30 @@ class Attacker:
         self.line.read(self.line.now_s() + self.random.choice((0.6, 2.0)))
 
 
-def program_of(rng: random.Random) -> bytes:
-    """Return a program that is whole, but in one of four cases for a byte."""
-    code = bytearray(block_of(rng, 0) + program.halt())
+def program_of(rng: random.Random, piece: Piece | None = None) -> bytes:
+    """Return a program that is whole, but in one of four cases for a byte; `piece` makes what is no loop."""
+    code = bytearray(block_of(rng, 0, piece or piece_of) + program.halt())
     if rng.random() < 0.25:
         code[rng.randrange(len(code))] = rng.randrange(256)
     return bytes(code[:4096])
 
 
-def block_of(rng: random.Random, depth: int) -> bytes:
-    return b"".join(op_of(rng, depth) for _ in range(rng.randrange(1, 7)))
+def block_of(rng: random.Random, depth: int, piece: Piece) -> bytes:
+    return b"".join(op_of(rng, depth, piece) for _ in range(rng.randrange(1, 7)))
 
 
-def op_of(rng: random.Random, depth: int) -> bytes:
+def op_of(rng: random.Random, depth: int, piece: Piece) -> bytes:
+    if depth < program.DEPTH_MAX and rng.random() < 0.15:
+        return program.repeat(rng.choice((1, 2, 5, 65_535))) + block_of(rng, depth + 1, piece) + program.next_()
+    return piece(rng)
+
+
+def piece_of(rng: random.Random) -> bytes:
     mask = rng.choice((1 << rng.randrange(8), rng.randrange(1, 256)))
     duty, time_ms = rng.choice((1000, rng.randrange(1001))), rng.randrange(3000)
     condition = program.Condition(
         rng.randrange(1, 5), rng.randrange(2), rng.randrange(2), rng.randrange(200, 1000), mask
     )
-    if depth < program.DEPTH_MAX and rng.random() < 0.15:
-        return program.repeat(rng.choice((1, 2, 5, 65_535))) + block_of(rng, depth + 1) + program.next_()
     return rng.choice((
         program.fire(mask, duty, time_ms), program.fire(mask, duty, time_ms, rng.randrange(300, 1500)),
         program.ramp(mask, duty, time_ms, 0, rng.randrange(3000)), program.delay(rng.randrange(700)),
