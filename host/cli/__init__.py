@@ -43,6 +43,7 @@ COMMANDS = {
     "explain": "Explain an error, refusal or fault code.",
     "deploy": "Put the firmware on a board and keep it once it is healthy.",
     "log": "Look into logs: info, export, plot.",
+    "fit": "Estimate a material from the log of a press.",
     "figure": "Draw a figure of the paper from the bench.",
 }
 INTERRUPTED = 130

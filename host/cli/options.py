@@ -97,6 +97,14 @@ def force_mn(text: str) -> int:
     return _measured(text, {"N": 1000, "mN": 1})
 
 
+def length_m(text: str) -> float:
+    """Return the metres that `45.9mm`, `0.0459 m` or `45.9` (mm) stand for; 0 is none."""
+    length_nm = _measured(text, {"mm": 1_000_000, "m": 1_000_000_000})
+    if not length_nm:
+        raise click.BadParameter(f"{text!r}: must be above 0 mm")
+    return length_nm / 1e9
+
+
 def duty_permille(text: str) -> int:
     """Return the permille that `60%` or `60` stand for."""
     return _measured(text, {"%": 10})
