@@ -1,5 +1,6 @@
 """docs/press.md says what a run says: its commands run, its measured numbers come out again."""
 
+import json
 import re
 import shlex
 import subprocess
@@ -112,7 +113,28 @@ def table(head: str) -> dict[str, tuple[float, float]]:
     return {name: (float(alone), float(bench)) for name, alone, bench in rows}
 
 
-@pytest.mark.parametrize("block", BLOCKS, ids=lambda block: block.split()[0])
+def test_the_material_that_is_found_is_that_of_the_page(tmp_path, monkeypatch, capsys):
+    lines = next(block for block in BLOCKS if "fit press" in block).splitlines()
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "gaits").symlink_to(ROOT / "gaits")
+    (tmp_path / "out").mkdir()
+    softrig(shlex.split(lines[0])[1:], standalone_mode=False)
+    capsys.readouterr()
+
+    softrig(["fit", "press", "out/flat.mcap", "--json"], standalone_mode=False)
+
+    found = json.loads(capsys.readouterr().out)
+    rows = re.findall(
+        r"^\| \*(E₁|c₁|c₂)\* \| (\d+) \S.*?\| ([\d.]+) \S.*?\| ([\d.]+) to ([\d.]+) \|$", PAGE, re.MULTILINE
+    )
+    for (name, *told), key in zip(rows, ("youngs_modulus_kpa", "viscosity_kpa_s", "damping_kpa_s"), strict=True):
+        planted, value, low, high = map(float, told)
+        assert found[key]["value"] == pytest.approx(value, abs=found[key]["error"]), name
+        assert (found[key]["low"], found[key]["high"]) == pytest.approx((low, high), abs=2 * found[key]["error"]), name
+        assert low <= planted <= high
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=lambda block: " ".join(block.split()[:2]))
 def test_the_commands_of_the_page_run(block, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("gaits", "hil_sim"):
