@@ -18,6 +18,7 @@ class Claim:
     until_us: float
     budget_us: dict[int, float] = field(default_factory=dict)  # of single channels; none: unlimited
     of_program: bool = False
+    outlived: bool = False  # the lease, by another program, when this one was ordered
 
     @property
     def limited(self) -> bool:

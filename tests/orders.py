@@ -108,7 +108,9 @@ class Ledger:
         elif message in (messages.ORIENT, messages.PRESS):
             claim = Claim(self._joints, now_us, now_us + (order.time_ms + order.hold_ms) * 1000)
         elif message is messages.START:
-            claim = Claim((1 << 32) - 1, now_us, inf, of_program=True)
+            claim = Claim((1 << 32) - 1, now_us, inf, of_program=True, outlived=self._outlives)
+            self._outlives = self._outlives or (self._one_may if self._doubtful else self._may_outlive)
+            self._live(now_us)  # it may have begun, though the robot has no room to say so
         elif message is messages.PROGRAM:
             self._begin(talk, order.header)
         elif message is messages.CODE:
@@ -164,6 +166,9 @@ class Ledger:
             self._doubtful = self._doubtful or message in (messages.PROGRAM, messages.CODE)
             if claim is not None:
                 claim.end(now_us if message in TESTED else claim.from_us)  # the self-test has been
+            if message is messages.START:
+                self._outlives = claim.outlived
+                self._live(now_us)
         elif message is messages.CALIBRATE:
             claim.end(now_us)
         elif message is messages.DISARM:
