@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +10,7 @@ import click
 
 from host.cli.options import json_option, length_m
 from host.cli.output import emit, note, writing
-from host.errors import BadRequest
+from host.fit import check_scipy
 from host.logbook import read_log
 from host.view import check_pictures
 
@@ -44,8 +43,7 @@ def press(file: Path, shape: str | None, spring: bool, plot_path: Path | None, a
 
     A flat or bonded punch, pushed at an even speed and held for as long as the block takes to relax, tells most.
     """
-    if not _has_scipy():
-        raise BadRequest("a fit needs scipy: pip install 'softrig[fit]'")
+    check_scipy()
     if plot_path:
         check_pictures(plot_path)
     from host.fit.estimate import estimate  # noqa: PLC0415  (scipy)
@@ -64,14 +62,6 @@ def press(file: Path, shape: str | None, spring: bool, plot_path: Path | None, a
         with writing(plot_path):
             draw_fit(pressed, found, plot_path)
         note(f"picture: {plot_path}")
-
-
-def _has_scipy() -> bool:
-    """Return whether scipy is there; one that is not may still have an entry without a module."""
-    try:
-        return find_spec("scipy") is not None
-    except ValueError:
-        return False
 
 
 def _fields(file: Path, press: Press, shape_m: float, found: Found) -> dict[str, Any]:
