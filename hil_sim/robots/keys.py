@@ -12,7 +12,6 @@ from math import inf, isfinite, radians
 
 RING, SPHERE, FINGERS, PRESS = "ring", "sphere", "fingers", "press"  # kinds of robots
 SHELL, COILS, SERVOS = "shell", "coils", "servos"  # what robots of some kinds have
-CAMERA, SERVOS, LOAD = "camera", "servos", "load cell"
 BENCH, BATTERY = "bench supply", "battery"  # kinds of power
 GRID = "block without a mesh"  # of its own, from a file
 KINDS: dict[str, tuple[str, ...]] = {
