@@ -1,6 +1,6 @@
 """The only code that drives a joint: along a straight line to its target, there for as long as was ordered, then limp.
 
-Whatever is asked, no joint is told an angle outside its range, faster than its slew limit, or longer than its order.
+Whatever is asked, no joint is told a position outside its range, faster than its slew limit, or longer than its order.
 Orders are checked whole before any of it is taken. A limp joint sets out from where it is measured and takes the time
 that its slew limit needs, so that it never jumps. A mask has the channel numbers of the profile: coils come first.
 """
@@ -40,7 +40,7 @@ class Joints:
         self._end_ms = array("i", [0] * count)
 
     def move(self, mask: int, target_centi: int, over_ms: int, hold_ms: int, now_ms: int) -> None:
-        """Turn these joints to an angle within that time and hold it for so long, or raise Refused."""
+        """Bring these joints to a position within that time and hold it for so long, or raise Refused."""
         self._check(mask, target_centi, over_ms, hold_ms)
         for joint in range(self.count):
             if mask >> self.first + joint & 1:

@@ -1,4 +1,4 @@
-"""What a joint's servo says of itself, through a converter: its angle by its potentiometer, and its current.
+"""What a joint's servo says of itself, through a converter: its position by its potentiometer, and its current.
 
 A joint that takes its stall current for long cannot turn as it is told; one that stands elsewhere than it was told for
 longer than any lag behind a quick move has no torque; a potentiometer that reads what none of its positions gives is
@@ -31,7 +31,7 @@ class JointSense:
         self._followed_ms = array("i", [0] * joints.count)  # when it was last where it was told, or limp
 
     def read(self, now_ms: int) -> None:
-        """Read angle and current of one joint in its turn."""
+        """Read position and current of one joint in its turn."""
         joints, limits, joint = self._joints, self._limits, self._turn
         self._turn = joint + 1 if joint + 1 < joints.count else 0
         row = self._rows[joint]
@@ -64,7 +64,7 @@ class JointSense:
         return 0
 
     def broken(self) -> int:
-        """Return a joint whose angle cannot be read, or NONE."""
+        """Return a joint whose position cannot be read, or NONE."""
         for joint in range(self._joints.count):
             if self._broken[joint] >= BROKEN_READS:
                 return joint

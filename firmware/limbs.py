@@ -122,7 +122,7 @@ class Limbs:
         self.joints.all_off()
 
     def broken_channel(self) -> int:
-        """Return the channel of a joint whose angle cannot be read, or NO_JOINT."""
+        """Return the channel of a joint whose position cannot be read, or NO_JOINT."""
         joint = self.sense.broken()
         return NO_JOINT if joint == NONE else self.joints.first + joint
 
