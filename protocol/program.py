@@ -26,9 +26,9 @@ ARGUMENTS = {
 }  # fmt: skip
 
 TEMPERATURE, CURRENT, VOLTAGE, BOARD, HEAT, ROLL, PITCH, DOWN = 1, 2, 3, 4, 5, 6, 7, 8  # sources of a condition
-POSITION, LOAD, ORIENTATION, FORCE, PRESSURE = 9, 10, 11, 12, 13
+POSITION, JOINT_CURRENT, ORIENTATION, FORCE, PRESSURE = 9, 10, 11, 12, 13
 OF_COILS = (TEMPERATURE, HEAT, DOWN)  # those that ask about the coils of the mask
-OF_JOINTS = (POSITION, LOAD)  # and about the joints of the mask
+OF_JOINTS = (POSITION, JOINT_CURRENT)  # and about the joints of the mask
 OF_CELLS = (PRESSURE,)  # and about the force cells of the mask, in the order of the profile
 OF_ATTITUDE = (ROLL, PITCH, DOWN)
 ANY, ALL, CHOSEN = 0, 1, 2  # CHOSEN: the mask is the number of the place that holds an aimed coil

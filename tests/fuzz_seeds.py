@@ -85,7 +85,7 @@ def hand() -> Iterator[tuple[str, bytes]]:
         )
         turn = told(messages.ORIENT, messages.ORIENT.pack(target_centideg=500, time_ms=1000, hold_ms=1000), 0x07)
         there = program.Condition(program.POSITION, program.ALL, program.BELOW, 300, right | left)
-        strained = program.Condition(program.LOAD, program.ANY, program.ABOVE, 2000, right)
+        strained = program.Condition(program.JOINT_CURRENT, program.ANY, program.ABOVE, 2000, right)
         turned = program.Condition(program.ORIENTATION, program.ANY, program.ABOVE, 400, 0)
         closed = program.move(right, 250, 200) + program.move(left, -250, 200) + program.delay(200)
         code = program.guard(strained) + closed + program.wait(there, 300, 0) + program.orient(500, 900)

@@ -264,7 +264,7 @@ def rolling():
 
 def turning():
     """Return a program that moves joints and asks for them and for the object in every way."""
-    strained = program.Condition(program.LOAD, program.ANY, program.ABOVE, 2000, 0b11)
+    strained = program.Condition(program.JOINT_CURRENT, program.ANY, program.ABOVE, 2000, 0b11)
     arrived = program.Condition(program.POSITION, program.ALL, program.BELOW, 900, 0b11)
     turned = program.Condition(program.ORIENTATION, program.ANY, program.ABOVE, 150, 0)
     ops = (

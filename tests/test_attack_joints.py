@@ -125,7 +125,7 @@ def test_one_error_on_the_bus_does_not_lose_the_camera(gripping):
 
 def test_a_guard_trips_even_when_another_asks_for_an_object_that_nobody_sees(armed):
     turned = program.Condition(program.ORIENTATION, program.ANY, program.ABOVE, 3000, 0)
-    strained = program.Condition(program.LOAD, program.ANY, program.ABOVE, 1000, L)
+    strained = program.Condition(program.JOINT_CURRENT, program.ANY, program.ABOVE, 1000, L)
     run_program(armed, program.guard(turned) + program.guard(strained) + program.delay(9000) + program.halt())
 
     armed.core.limbs.camera.known = False

@@ -230,7 +230,7 @@ def test_joints_hold_beyond_the_end_of_a_program_until_the_robot_is_disarmed(han
 
 def test_a_program_waits_for_an_angle_and_trips_at_a_guarded_current(hand):
     above = program.Condition(program.POSITION, program.ANY, program.ABOVE, 400, R)
-    guarded = program.guard(program.Condition(program.LOAD, program.ANY, program.ABOVE, 1000, L))
+    guarded = program.guard(program.Condition(program.JOINT_CURRENT, program.ANY, program.ABOVE, 1000, L))
     code = guarded + program.move(R, 800, 400) + program.wait(above, 5000, program.ABORT) + program.step(2)
     run_program(hand, code + program.delay(60000) + program.halt())
 

@@ -3,7 +3,7 @@
 import pytest
 
 from protocol import verify
-from protocol.program import ABORT, ABOVE, ALL, ANY, BELOW, LOAD, ORIENTATION, POSITION, TEMPERATURE, Condition
+from protocol.program import ABORT, ABOVE, ALL, ANY, BELOW, JOINT_CURRENT, ORIENTATION, POSITION, TEMPERATURE, Condition
 from tests.gait_scripts import compiled, diagnostics, hand_robot, mistakes, mixed_robot, round_robot
 from tests.gait_scripts import ops as round_ops
 
@@ -95,9 +95,9 @@ def test_an_orient_is_an_order_and_the_time_it_takes():
     [
         ("R.angle > 10 deg", Condition(POSITION, ANY, ABOVE, 1000, R)),
         ("R.angle < -10.25 deg", Condition(POSITION, ANY, BELOW, -1025, R)),
-        ("any R L.current > 500 mA", Condition(LOAD, ANY, ABOVE, 500, R | L)),
+        ("any R L.current > 500 mA", Condition(JOINT_CURRENT, ANY, ABOVE, 500, R | L)),
         ("all both.angle < 4 deg", Condition(POSITION, ALL, BELOW, 400, R | L)),
-        ("any.current > 500 mA", Condition(LOAD, ANY, ABOVE, 500, R | L)),
+        ("any.current > 500 mA", Condition(JOINT_CURRENT, ANY, ABOVE, 500, R | L)),
         ("all all.angle > 0 deg", Condition(POSITION, ALL, ABOVE, 0, R | L)),
         ("orientation > 4.9 deg", Condition(ORIENTATION, ANY, ABOVE, 490, 0)),
         ("orientation < -4.9 deg", Condition(ORIENTATION, ANY, BELOW, -490, 0)),

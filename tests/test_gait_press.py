@@ -6,7 +6,7 @@ import pytest
 
 from host.profile import read_profile
 from protocol import verify
-from protocol.program import ABORT, ABOVE, ALL, ANY, BELOW, FORCE, LOAD, POSITION, PRESSURE, Condition
+from protocol.program import ABORT, ABOVE, ALL, ANY, BELOW, FORCE, JOINT_CURRENT, POSITION, PRESSURE, Condition
 from tests.gait_scripts import block, compiled, diagnostics, hand_robot, mistakes, press_robot, round_robot
 from tests.gait_scripts import ops as round_ops
 
@@ -101,7 +101,7 @@ def test_a_robot_may_be_called_as_the_statement_is():
         ("P.depth > 3 mm", Condition(POSITION, ANY, ABOVE, 300, P)),
         ("P.depth < -0.25 mm", Condition(POSITION, ANY, BELOW, -25, P)),
         ("any.depth > 3 mm", Condition(POSITION, ANY, ABOVE, 300, P)),
-        ("P.current > 500 mA", Condition(LOAD, ANY, ABOVE, 500, P)),
+        ("P.current > 500 mA", Condition(JOINT_CURRENT, ANY, ABOVE, 500, P)),
     ],
 )
 def test_a_condition_on_force_pressure_and_depth_is_left_for_the_robot_to_evaluate(text, condition):

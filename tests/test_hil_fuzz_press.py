@@ -11,7 +11,7 @@ from protocol import messages, program
 from tests.test_hil_fuzz import Attacker, program_of
 
 ADDRESS = "sim:press?set=block.columns_count:16&set=block.rows_count:8&set=material.youngs_modulus_kpa:150"
-SOURCES = (program.POSITION, program.LOAD, program.FORCE, program.PRESSURE)
+SOURCES = (program.POSITION, program.JOINT_CURRENT, program.FORCE, program.PRESSURE)
 
 
 class Presser(Attacker):

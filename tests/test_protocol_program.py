@@ -99,7 +99,7 @@ def test_the_verification_finds_out_whether_a_program_needs_a_camera_and_the_loo
         program.move(0, 0, 1), program.move(1, 0, 1), program.move(1 << 10, 0, 1), program.move(0x101, 0, 1),
         program.fire(1 << 8, 1, 1), program.off(1 << 9),
         program.guard(Condition(program.POSITION, 0, program.ABOVE, 0, 1)),
-        program.guard(Condition(program.LOAD, program.CHOSEN, program.ABOVE, 0, 1 << 8)),
+        program.guard(Condition(program.JOINT_CURRENT, program.CHOSEN, program.ABOVE, 0, 1 << 8)),
         program.guard(Condition(program.HEAT, 0, program.ABOVE, 0, 1 << 8)),
     ],
 )  # fmt: skip

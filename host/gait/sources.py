@@ -29,7 +29,7 @@ COIL = {
     "heat": Source(program.HEAT, units.ENERGY),
 }
 POSITION = {unit.quantity: Source(program.POSITION, unit.kind) for unit in UNITS.values()}
-JOINT = {**POSITION, "current": Source(program.LOAD, units.CURRENT)}
+JOINT = {**POSITION, "current": Source(program.JOINT_CURRENT, units.CURRENT)}
 CELL = {"pressure": Source(program.PRESSURE, units.PRESSURE)}
 BODY = {"roll": Source(program.ROLL, units.ANGLE, 10), "pitch": Source(program.PITCH, units.ANGLE, 10)}
 OBJECT = {"orientation": Source(program.ORIENTATION, units.ANGLE)}
