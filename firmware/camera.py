@@ -1,6 +1,6 @@
 """The angle of the object that a camera sees: the newest frame, whether it is to be trusted, and when it was lost."""
 
-from protocol.variables import UNKNOWN_ANGLE
+from protocol.variables import UNKNOWN_CENTI
 
 EVERY = 2  # control steps between two looks: as often as it has a new frame
 AGAIN = 10  # looks that are left out when it does not answer and has not for long
@@ -29,8 +29,8 @@ class Camera:
             self.known = False
 
     def object_centideg(self) -> int:
-        """Return the angle, or UNKNOWN_ANGLE."""
-        return self.centideg if self.known else UNKNOWN_ANGLE
+        """Return the angle, or UNKNOWN_CENTI."""
+        return self.centideg if self.known else UNKNOWN_CENTI
 
     def _take(self, now_ms: int) -> None:
         try:

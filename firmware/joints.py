@@ -9,9 +9,9 @@ from array import array
 
 from firmware.channels import Refused
 from protocol import codes
-from protocol.variables import UNKNOWN_ANGLE
+from protocol.variables import UNKNOWN_CENTI
 
-LIMP = UNKNOWN_ANGLE
+LIMP = UNKNOWN_CENTI
 FINE = 16  # parts of a hundredth, in which pulses follow a line: whole ones would jerk what is pressed
 NONE_TOLD = 1 << 29
 LONG_MS = 29_000  # a longer way is reckoned in coarser time: 36000 hundredths times more would be beyond 2**30

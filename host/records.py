@@ -191,9 +191,9 @@ def _attitude(roll_decideg: int, pitch_decideg: int, down: int, labels: tuple[st
     return {"roll_deg": roll_decideg / 10, "pitch_deg": pitch_decideg / 10, "down": channel_name(down, labels)}
 
 
-def _known(centi: int = variables.UNKNOWN_ANGLE) -> float | None:
+def _known(centi: int = variables.UNKNOWN_CENTI) -> float | None:
     """Return an angle or a position, or None where the robot says that there is none, or nothing."""
-    return None if centi == variables.UNKNOWN_ANGLE else centi / 100
+    return None if centi == variables.UNKNOWN_CENTI else centi / 100
 
 
 def state_name(state: int) -> str:

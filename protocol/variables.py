@@ -112,7 +112,7 @@ def veiled(values: bytes) -> bytes:
     return (int.from_bytes(values, "little") ^ int.from_bytes(b"\x55" * count, "little")).to_bytes(count, "little")
 
 
-UNKNOWN_ANGLE = -0x8000  # of a joint that is limp, of an object that nobody sees
+UNKNOWN_CENTI = -0x8000  # of a joint that is limp, of an object that nobody sees
 
 # What a host that asks for nothing else is told, and what every listener can read.
 USUAL = tuple([

@@ -231,7 +231,7 @@ class FakeRobot:
         """Switch every coil off and let every joint go limp."""
         self.duty = [0] * len(self.duty)
         for joint in self.joints:
-            joint.commanded_centi = variables.UNKNOWN_ANGLE
+            joint.commanded_centi = variables.UNKNOWN_CENTI
 
     def _send(self, message, now_ms: int, **values) -> None:
         self.link.send(message.number, message.pack(**values), now_ms)
@@ -259,14 +259,14 @@ class FakeJoint:
 
     def __init__(self) -> None:
         self.centi = 0
-        self.commanded_centi = variables.UNKNOWN_ANGLE
+        self.commanded_centi = variables.UNKNOWN_CENTI
         self.ma = 120  # while it is driven it takes ten times as much
         self._arrives_ms = self._ends_ms = 0
 
     @property
     def driven(self) -> bool:
         """Return whether it has pulses."""
-        return self.commanded_centi != variables.UNKNOWN_ANGLE
+        return self.commanded_centi != variables.UNKNOWN_CENTI
 
     def move(self, target_centi: int, arrives_ms: int, hold_ms: int) -> None:
         """Go there, and go limp that long after."""
@@ -278,7 +278,7 @@ class FakeJoint:
         if self.driven and now_ms >= self._arrives_ms:
             self.centi = self.commanded_centi
         if self.driven and now_ms >= self._ends_ms:
-            self.commanded_centi, self.ma = variables.UNKNOWN_ANGLE, 120
+            self.commanded_centi, self.ma = variables.UNKNOWN_CENTI, 120
 
 
 def plug_in(line: object, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,7 +3,7 @@
 import pytest
 
 from protocol import codes, messages, program
-from protocol.variables import UNKNOWN_ANGLE as LIMP
+from protocol.variables import UNKNOWN_CENTI as LIMP
 from tests.firmware_bench import FINGERS, Rig, refusal, run_program
 
 R, L = 0b01, 0b10

@@ -4,7 +4,7 @@ import pytest
 
 from protocol import codes, messages, program
 from protocol.program import ABORT, ABOVE, ANY, Condition
-from protocol.variables import UNKNOWN_ANGLE as LIMP
+from protocol.variables import UNKNOWN_CENTI as LIMP
 from tests.firmware_bench import FINGERS, Rig, refusal, run_program
 from tests.firmware_press import P, PressRig
 

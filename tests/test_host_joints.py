@@ -21,7 +21,7 @@ from tests.fake_robot import FakeLine, FakeRobot
 from tests.joint_samples import FINGERS, HAND
 
 FINGER, BOTH = read_profile(FINGERS), read_profile(HAND)
-LIMP = variables.UNKNOWN_ANGLE
+LIMP = variables.UNKNOWN_CENTI
 CODE = program.move(0b11, 800, 300) + program.delay(300) + program.halt()
 PROGRAM = program.header(CODE, 0) + CODE
 
@@ -151,7 +151,9 @@ def test_a_log_gives_joints_back_and_exports_them_by_label(tmp_path):
 
 
 def test_a_robot_without_a_camera_has_no_object_in_its_rows():
-    told = Telemetry(0, 0, "idle", 0, 6000, 0, 25.0, (), (), joint_position=(1.0,), commanded_position=(None,), joint_ma=(5,))
+    told = Telemetry(
+        0, 0, "idle", 0, 6000, 0, 25.0, (), (), joint_position=(1.0,), commanded_position=(None,), joint_ma=(5,)
+    )
 
     assert "object_deg" not in row_of(told, Parts(("R",), (), ("R",)))
     assert row_of(told, Parts(("R",), (), ("R",), cameras=1))["object_deg"] is None

@@ -21,7 +21,7 @@ from tests.joint_samples import FINGERS
 from tests.press_profiles import MADE, PRESS, weighed, without
 
 AXIS = read_profile(PRESS)
-LIMP = variables.UNKNOWN_ANGLE
+LIMP = variables.UNKNOWN_CENTI
 CODE = program.press(5000, 200, 400) + program.delay(400) + program.halt()
 TOLD = Telemetry(
     57, 50, "armed", 0, 6000, 350, 23.1, (), (),

@@ -118,7 +118,7 @@ def _sources(log: Log) -> Iterator[list[Reading]]:
         told = row["values"]
         if {"load_mn", "joint_centi", "commanded_centi"} <= told.keys() and told["load_mn"] is not None:
             depth, command = (_only(told[name]) for name in ("joint_centi", "commanded_centi"))
-            known = None if command == variables.UNKNOWN_ANGLE else command / 100
+            known = None if command == variables.UNKNOWN_CENTI else command / 100
             slots.setdefault(row["slot"], []).append((row["now_ms"], depth / 100, known, told["load_mn"] / 1000))
     yield from slots.values()
     yield [
