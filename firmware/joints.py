@@ -14,6 +14,7 @@ from protocol.variables import UNKNOWN_CENTI
 LIMP = UNKNOWN_CENTI
 FINE = 16  # parts of a hundredth, in which pulses follow a line: whole ones would jerk what is pressed
 NONE_TOLD = 1 << 29
+BACK_MS = 100  # for which a joint that was told a smaller position is on its way back
 LONG_MS = 29_000  # a longer way is reckoned in coarser time: 36000 hundredths times more would be beyond 2**30
 
 
@@ -31,6 +32,7 @@ class Joints:
         self.current_ma = array("H", [0] * count)
         self._servos = servos
         self._limits = limits
+        self._back_ms = array("i", [0] * count)  # when it was last told a smaller position than before
         self._fine = array("b", [0] * count)  # beyond what is commanded, in parts of a hundredth
         self._written = array("i", [NONE_TOLD] * count)
         self._start_centi = array("h", [0] * count)
@@ -90,10 +92,9 @@ class Joints:
                 else:
                     self._servos[joint].pulse(self._limits.width_ns(centi, fine))
 
-    def pushing(self, joint: int) -> bool:
-        """Return whether a joint is driven and not on its way back to a smaller position."""
-        commanded_centi = self.commanded_centi[joint]
-        return commanded_centi != LIMP and commanded_centi <= self._target_centi[joint]
+    def pushing(self, joint: int, now_ms: int) -> bool:
+        """Return whether a joint is driven and not on its way back: not even by a hundredth in a tenth of a second."""
+        return self.commanded_centi[joint] != LIMP and now_ms - self._back_ms[joint] > BACK_MS
 
     def moving(self, now_ms: int) -> bool:
         """Return whether a joint is still on its way."""
@@ -140,6 +141,7 @@ class Joints:
         self._over_ms[joint] = over_ms
         self._end_ms[joint] = now_ms + over_ms + hold_ms
         self.commanded_centi[joint] = start_centi
+        self._back_ms[joint] = now_ms if target_centi < start_centi else now_ms - BACK_MS - 1
         self._fine[joint] = 0
         self.on_mask |= 1 << self.first + joint
 
@@ -158,4 +160,6 @@ class Joints:
             self._fine[joint] = way % over_ms * FINE // over_ms
         elif over_ms:
             self._fine[joint] = 0
+        if centi < self.commanded_centi[joint]:
+            self._back_ms[joint] = now_ms
         self.commanded_centi[joint] = centi

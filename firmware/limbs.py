@@ -43,7 +43,7 @@ class Limbs:
         """Read what is measured."""
         self.sense.read(now_ms)
         if self.load:
-            self.load.read(self.joints.pushing(0))
+            self.load.read(self.joints.pushing(0, now_ms))
         if self.cells:
             self.cells.read()
         if self.camera:
