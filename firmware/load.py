@@ -1,12 +1,13 @@
 """The load cell behind an axis and the force cells in what it presses, through the converter's inputs.
 
 A force beyond its limit is a fault while the axis is driven and not on its way back: what presses too hard must be able
-to be moved off. A load cell that reads either end of the converter's range is torn off, or far beyond its own.
+to be moved off, also beyond what the load cell can tell: the upper end of the converter's range is such a force. A load
+cell that reads the lower end is torn off.
 """
 
 from array import array
 
-from firmware.profile import COUNTS_MAX, EDGE_COUNTS
+from firmware.profile import EDGE_COUNTS
 from protocol import codes
 
 OVER_READS = 3  # in a row that a force must be too great before it is believed
@@ -31,8 +32,7 @@ class Load:
         self.force_mn = self._limits.force_mn(self.counts)
         is_over = pushing and abs(self.force_mn) > self._limits.trip_mn
         self._over = min(self._over + 1, OVER_READS) if is_over else 0
-        at_edge = not EDGE_COUNTS < self.counts < COUNTS_MAX - EDGE_COUNTS
-        self._edge = min(self._edge + 1, BROKEN_READS) if at_edge else 0
+        self._edge = min(self._edge + 1, BROKEN_READS) if self.counts <= EDGE_COUNTS else 0
 
     @property
     def broken(self) -> bool:

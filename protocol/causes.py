@@ -403,11 +403,12 @@ CODES = (
         codes.OVERLOAD, "F29", "mN",
         "The force on the load cell went beyond its limit.",
         ALL_OFF + " The axis of a press stays where it is: its screw holds it.",
-        "Find out what was in the way; `softrig clear`, arm and move the axis back.",
+        "Find out what was in the way; `softrig clear`, arm and move the axis back. With nothing in the way, check "
+        "the load cell's wire and amplifier.",
     ),
     Code(
         codes.LOAD_CELL, "F30", "counts",
-        "The load cell reads the end of its range: it is torn off, or pulled or pressed far beyond it.",
+        "The load cell reads the lower end of its range: it is torn off, or pulled far beyond it.",
         FOUND,
         "Check the load cell's wire, its amplifier and the converter, then `softrig clear`.",
     ),

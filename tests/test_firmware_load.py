@@ -89,6 +89,17 @@ def test_too_great_a_force_can_be_taken_off_by_moving_back(armed):
     assert back_mm < 0.2
 
 
+def test_an_axis_that_hardly_moves_back_under_too_great_a_force_trips(armed):
+    armed.move(P, 300, over_ms=3000)
+    armed.run(3100)
+    armed.move(P, 299, over_ms=60_000)
+    armed.run(50)
+    armed.axis.load_counts = OVER_COUNTS
+    armed.run(200)
+
+    assert armed.events("tripped")[-1].code == codes.OVERLOAD
+
+
 def test_an_axis_that_stays_under_too_great_a_force_trips(armed):
     armed.axis.mm = 3.0
     armed.axis.load_counts = OVER_COUNTS
@@ -98,14 +109,39 @@ def test_an_axis_that_stays_under_too_great_a_force_trips(armed):
     assert armed.events("tripped")[-1].code == codes.OVERLOAD
 
 
-@pytest.mark.parametrize("counts", [0, 8, 4087, 4095])
-def test_a_load_cell_at_the_end_of_the_range_is_refused_before_arming(rig, counts):
+@pytest.mark.parametrize("counts", [0, 8])
+def test_a_load_cell_that_is_torn_off_is_refused_before_arming(rig, counts):
     rig.axis.load_counts = counts
     rig.run(100)
 
     refused = refusal(rig.arm())
 
     assert (refused.code, refused.value) == (codes.LOAD_CELL, counts)
+
+
+@pytest.mark.parametrize("counts", [4087, 4095])
+def test_a_force_beyond_what_the_load_cell_can_tell_is_no_reason_to_stay_under_it(rig, counts):
+    """A hard block that keeps its force would hold the axis for ever: nobody could arm to lift it."""
+    rig.axis.mm, rig.axis.load_counts = 3.0, counts
+    rig.run(100)
+    rig.arm()
+    rig.move(P, 0, over_ms=3000)
+    rig.run(2900)
+
+    assert rig.axis.mm < 0.2
+    assert not rig.events("tripped")
+
+
+@pytest.mark.parametrize("counts", [4087, 4095])
+def test_under_such_a_force_the_axis_is_not_pushed_on(rig, counts):
+    rig.axis.mm, rig.axis.load_counts = 3.0, counts
+    rig.run(100)
+    rig.arm()
+    rig.press(1000)
+    rig.run(25)
+
+    assert rig.events("tripped")[-1].code == codes.OVERLOAD
+    assert rig.axis.mm == pytest.approx(3.0, abs=0.02)
 
 
 def test_a_load_cell_that_is_torn_off_trips_an_armed_robot(armed):

@@ -34,6 +34,21 @@ def test_too_much_force_switches_the_press_off_and_leaves_it_where_it_is():
     assert 20.0 < rig.bench.observe()["force_peak_n"] < 20.0 + 2.5  # 100 ms of the way down
 
 
+def test_a_block_that_is_too_hard_for_the_load_cell_and_never_gives_way_can_be_left():
+    elastic = "set=material.youngs_modulus_kpa:60000&set=material.parallel_modulus_kpa:60000"
+    rig, _ = pressed(elastic)
+    pinned_n = rig.bench.plant.load_n
+
+    rig.robot.clear()
+    rig.robot.arm()
+    rig.robot.move(["P"], -200, 1000, 1000)
+    rig.run(1.5)
+
+    assert pinned_n > 26.2  # beyond what the load cell can tell
+    assert not rig.bench.plant.touching
+    assert rig.robot.status().state == "armed"
+
+
 def test_a_servo_that_cannot_press_any_harder_trips():
     rig, _ = pressed("set=axis.stall_force_n:4", seconds=3.0)
 
