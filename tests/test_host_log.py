@@ -12,10 +12,11 @@ import pytest
 from mcap.reader import make_reader
 
 from host.errors import BadRequest
-from host.log import TOPICS, LogWriter
+from host.log import LogWriter
 from host.logbook import read_log
 from host.profile import Parts
 from host.records import Event, Stopped, Telemetry
+from host.topics import TOPICS
 
 LABELS = ("A", "B")
 PARTS = Parts(LABELS, LABELS)
