@@ -5,25 +5,21 @@ Without scenes (a real robot, a plain log) only the curves are drawn.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from host.recording import Recording
-from host.view.curves import draw_current, label_time, record_times
+from host.view.curves import draw_current
 from host.view.film import Box, frame, together
 from host.view.grips import angle
 from host.view.hand import OBJECT, draw_hand, room
-from host.view.instants import Numbers, scene_times
+from host.view.instants import scene_times
 from host.view.jointcurves import draw_joint_currents, draw_joints, draw_object
+from host.view.panels import Panel, draw_panels, lines_at, stacked_mm
 from host.view.sheet import BOTTOM_MM, GAP_MM, LEFT_MM, NAME_MM, RIGHT_MM, TOP_MM, Sheet
-from host.view.style import FAINT, INK, PAGE_MM, Style
+from host.view.style import INK, PAGE_MM, Style
 from host.view.swings import telling
 
 SHOWN, EDGE_MM, WORDS_MM, LINE_MM = 6, 4.0, 9.0, 3.4
-LABEL_MM = 10.0  # from the axis to its name
-Panel = tuple[Callable[[Axes, Recording], None], float]  # what draws it, and its height in mm
 MEASURED: tuple[Panel, ...] = (
     (draw_joints, 32.0),
     (draw_object, 26.0),
@@ -38,13 +34,13 @@ def hand_figure(recording: Recording) -> Figure:
     box = strip_box(recording, shown) if shown else None
     each = (PAGE_MM - LEFT_MM - RIGHT_MM) / SHOWN
     strip_mm = each * (box[3] - box[2]) / (box[1] - box[0]) + WORDS_MM + GAP_MM + NAME_MM if box else 0.0
-    curves_mm = NAME_MM + sum(mm + GAP_MM for _, mm in MEASURED) - GAP_MM
+    curves_mm = NAME_MM + stacked_mm(MEASURED)
     sheet = Sheet(TOP_MM + strip_mm + curves_mm + BOTTOM_MM, recording.title)
     if box:
         sheet.name("a", "the fingers and what they hold, to scale")
         draw_strip(sheet, recording, shown, box)
     sheet.name("b" if box else "", "what the robot measured" + ", and what was true" * bool(box))
-    draw_curves(sheet, recording, scene_times(recording)[shown])
+    draw_panels(sheet, recording, MEASURED, lines_at(scene_times(recording)[shown]))
     return sheet.figure
 
 
@@ -68,19 +64,3 @@ def draw_strip(sheet: Sheet, recording: Recording, shown: list[int], box: Box) -
         turned = f"object {angle(scene['object']['deg'], 2, '+')}"
         sheet.write(middle, height_mm + 0.5 + LINE_MM, turned, color=OBJECT, **style)
     sheet.y_mm -= height_mm + WORDS_MM + GAP_MM
-
-
-def draw_curves(sheet: Sheet, recording: Recording, shown_s: Numbers) -> None:
-    """Draw the curves over one time, with lines at the instants that are shown."""
-    first: Axes | None = None
-    wide = PAGE_MM - LEFT_MM - RIGHT_MM
-    for draw, height_mm in MEASURED:
-        axes = sheet.axes(LEFT_MM, wide, height_mm, first)
-        first = first or axes
-        draw(axes, recording)
-        for t in shown_s:
-            axes.axvline(float(t), color=FAINT, lw=0.6, ls=(0, (4, 2)), zorder=0)
-        axes.yaxis.set_label_coords(-LABEL_MM / wide, 0.5)
-        axes.tick_params(labelbottom=False)
-        sheet.y_mm -= height_mm + GAP_MM
-    label_time(axes, record_times(recording))

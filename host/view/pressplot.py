@@ -5,8 +5,6 @@ Without scenes (a real robot, a plain log) only the curves are drawn.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
@@ -16,9 +14,8 @@ from matplotlib.path import Path
 
 from host.errors import BadRequest
 from host.recording import Recording, Scene
-from host.view.curves import label_time, record_times
 from host.view.film import Box, frame
-from host.view.instants import Numbers, scene_times
+from host.view.instants import scene_times
 from host.view.meshes import (
     EDGE_MM,
     FLESH,
@@ -30,15 +27,14 @@ from host.view.meshes import (
     path_of,
     trails,
 )
+from host.view.panels import Panel, draw_panels, lines_at, stacked_mm
 from host.view.presscurves import draw_cells, draw_depth, draw_force, draw_joint_current
 from host.view.pressing import nearest, press_of, slices_of
 from host.view.sheet import BOTTOM_MM, GAP_MM, LEFT_MM, NAME_MM, RIGHT_MM, TOP_MM, Sheet
-from host.view.style import FAINT, INK, PAGE_MM, Style
+from host.view.style import INK, PAGE_MM, Style
 
 SHOWN, WORDS_MM, LINE_MM, HEAD_MM = 4, 8.5, 3.4, 14.0
-LABEL_MM = 10.0  # from the axis to its name
 CELLS, DARKEST = "magma_r", 0.9  # colours of the cells, from no pressure to the greatest shown
-Panel = tuple[Callable[[Axes, Recording], None], float]  # what draws it, and its height in mm
 FORCE, DEPTH, PRESSURE, CURRENT = (draw_force, 36.0), (draw_depth, 28.0), (draw_cells, 34.0), (draw_joint_current, 20.0)
 
 
@@ -50,13 +46,13 @@ def press_figure(recording: Recording) -> Figure:
     strip_mm = height_of(box, each) + WORDS_MM + GAP_MM + NAME_MM if box else 0.0
     loaded = recording.telemetry[0].load_n is not None
     panels: list[Panel] = [*[FORCE] * loaded, DEPTH, *[PRESSURE] * bool(recording.cells), CURRENT]
-    curves_mm = NAME_MM + sum(mm + GAP_MM for _, mm in panels) - GAP_MM
+    curves_mm = NAME_MM + stacked_mm(panels)
     sheet = Sheet(TOP_MM + strip_mm + curves_mm + BOTTOM_MM, recording.title)
     if box:
         sheet.name("a", "block and indenter, to scale; squares: force cells, darker where more presses on them [kPa]")
         draw_strip(sheet, recording, shown, box)
     sheet.name("b" if box else "", "what the robot measured" + ", and what was true" * bool(box))
-    draw_curves(sheet, recording, panels, scene_times(recording)[shown])
+    draw_panels(sheet, recording, panels, lines_at(scene_times(recording)[shown]))
     return sheet.figure
 
 
@@ -119,19 +115,3 @@ def draw_cells_of(axes: Axes, scene: Scene, most_kpa: float) -> None:
         axes.add_patch(Rectangle((x - side / 2, y - side / 2), side, side, fc=shade, ec=INK, lw=0.3, zorder=3))
         text = f"{pressure:.1f}" if abs(pressure) >= 0.05 else "0"
         axes.text(x, y - side / 2 - 0.6, text, ha="center", va="top", fontsize=5, color=INK, zorder=4)
-
-
-def draw_curves(sheet: Sheet, recording: Recording, panels: list[Panel], shown_s: Numbers) -> None:
-    """Draw the curves over one time, with lines at the instants that are shown."""
-    first: Axes | None = None
-    wide = PAGE_MM - LEFT_MM - RIGHT_MM
-    for draw, height_mm in panels:
-        axes = sheet.axes(LEFT_MM, wide, height_mm, first)
-        first = first or axes
-        draw(axes, recording)
-        for t in shown_s:
-            axes.axvline(float(t), color=FAINT, lw=0.6, ls=(0, (4, 2)), zorder=0)
-        axes.yaxis.set_label_coords(-LABEL_MM / wide, 0.5)
-        axes.tick_params(labelbottom=False)
-        sheet.y_mm -= height_mm + GAP_MM
-    label_time(axes, record_times(recording))

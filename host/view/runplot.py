@@ -7,7 +7,6 @@ travel.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from types import ModuleType
 
 from matplotlib.axes import Axes
@@ -20,17 +19,17 @@ from host.view import film as plane
 from host.view.body import slope_of
 from host.view.film import strip_slope
 from host.view.handplot import hand_figure
-from host.view.instants import Numbers, between, fastest, nearby, scene_times
+from host.view.instants import between, fastest, nearby, scene_times
 from host.view.jointcurves import has_joints
+from host.view.panels import Panel, draw_panels, shade_over, stacked_mm
 from host.view.presscurves import presses
 from host.view.pressplot import press_figure
 from host.view.sheet import BAR_MM, BOTTOM_MM, GAP_MM, LEFT_MM, NAME_MM, RIGHT_MM, TOP_MM, Sheet, heat_of
-from host.view.style import FAINT, PAGE_MM
+from host.view.style import PAGE_MM
 
 STRIP_MAX_MM = 90.0
-Panel = tuple[Callable[[Axes, Recording], None], float]  # what draws it, and its height in mm
 TEMPERATURES_MM, CURRENT_MM, TRAVEL_MM, ENERGY_MM = 36.0, 18.0, 20.0, 24.0
-LABEL_MM, LONG_LABEL_MM = 9.0, 10.6  # from the axis to its name, beyond the coils' names
+LABEL_MM, LONG_LABEL_MM = 9.0, 10.6  # from the axis to its name, where that of a coil is one letter, or longer
 DUTY_MM, MOST_ROWS, ROW_MM = 27.0, 8, 3.2
 
 
@@ -66,13 +65,14 @@ def _picture(recording: Recording, rows: int, measured: list[Panel], seen: list[
     panels = measured + seen * bool(frames)
     strip_mm, row_mm = _film_heights(film, frames) if frames else (0.0, 0.0)
     rows_mm = strip_mm + row_mm * rows + (2 * NAME_MM + GAP_MM) * bool(frames)
-    height = TOP_MM + rows_mm + NAME_MM + sum(mm + GAP_MM for _, mm in panels) - GAP_MM + BOTTOM_MM
+    height = TOP_MM + rows_mm + NAME_MM + stacked_mm(panels) + BOTTOM_MM
     sheet = Sheet(height, recording.title)
     if frames:
         _draw_film(sheet, film, frames, (strip_mm, row_mm))
     told = ", and what was true" if measured else "how far it came"
     sheet.name("c" if frames else "", what + told * bool(frames))
-    _draw_curves(sheet, recording, panels, scene_times(film)[frames])
+    label_mm = LABEL_MM if max(map(len, recording.labels)) == 1 else LONG_LABEL_MM
+    draw_panels(sheet, recording, panels, shade_over(scene_times(film)[frames]), label_mm)
     return sheet.figure
 
 
@@ -123,18 +123,3 @@ def _slope(recording: Recording) -> str:
     level = [scene["host_ms"] for scene in recording.scenes if slope_of(scene) != slope]
     since = f" from {recording.seconds(level[-1]):.1f} s on" if level else ""
     return f" (slope {slope:.3g}°{since})"
-
-
-def _draw_curves(sheet: Sheet, recording: Recording, panels: list[Panel], shaded_s: Numbers) -> None:
-    first: Axes | None = None
-    label_mm = LABEL_MM if max(map(len, recording.labels)) == 1 else LONG_LABEL_MM
-    for draw, height_mm in panels:
-        axes = sheet.axes(LEFT_MM, PAGE_MM - LEFT_MM - RIGHT_MM, height_mm, first)
-        first = first or axes
-        draw(axes, recording)
-        if len(shaded_s):
-            axes.axvspan(shaded_s[0], shaded_s[-1], color=FAINT, alpha=0.25, lw=0, zorder=0)
-        axes.yaxis.set_label_coords(-label_mm / (PAGE_MM - LEFT_MM - RIGHT_MM), 0.5)
-        axes.tick_params(labelbottom=False)
-        sheet.y_mm -= height_mm + GAP_MM
-    curves.label_time(axes, curves.record_times(recording))
