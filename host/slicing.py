@@ -1,7 +1,7 @@
 """Takes slices of a body from an observer that sees inside it, at even times and where a program begins and ends.
 
 A slice is dear (70 kB of a log), so it is taken five times a second at first and more seldom later, see `Rhythm`, and
-one in which nothing has changed is kept at the ends only. numpy is imported with the first one.
+one in which nothing has changed is kept at the ends only, and before the next change. numpy is imported with the first.
 
     slicing = Slicing(observer, keep)
     slicing.look(host_ms)                   # as often as time passes
@@ -57,6 +57,7 @@ class Slicing:
         self._keep = keep
         self._mesh: Mesh | None = None
         self._last: Slice | None = None
+        self._unchanged: Slice | None = None  # since then, and not kept
         self._rhythm = Rhythm(every_ms)
 
     def look(self, host_ms: int) -> None:
@@ -82,6 +83,10 @@ class Slicing:
         from host.fields import mesh_of, same, slice_of  # noqa: PLC0415  (numpy, which most runs do not need)
 
         self._mesh, taken = self._mesh or mesh_of(fields), slice_of(fields, t_s, host_ms)
-        if self._last is None or anyway or not same(self._last, taken):
+        changed = self._last is None or not same(self._last, taken)
+        if changed and self._unchanged is not None:
+            self._keep(self._mesh, self._unchanged)
+        self._unchanged = None if changed or anyway else taken
+        if changed or anyway:
             self._last = taken
             self._keep(self._mesh, taken)

@@ -33,8 +33,8 @@ def fields(shift_mm=0.25):
 class Watcher:
     """An observer whose time goes on when it is told so, and that sees inside the body or not."""
 
-    def __init__(self, sees=True, moves_s=inf):
-        self.t_s, self.sees, self.moves_s, self.asked = 0.0, sees, moves_s, 0
+    def __init__(self, sees=True, moves_s=inf, again_s=inf):
+        self.t_s, self.sees, self.moves_s, self.again_s, self.asked = 0.0, sees, moves_s, again_s, 0
 
     def snapshot(self):
         return {"t_s": self.t_s, "coils": {}}
@@ -44,7 +44,8 @@ class Watcher:
 
     def fields(self):
         self.asked += 1
-        return fields(min(self.t_s, self.moves_s)) if self.sees else None
+        rests = self.moves_s < self.t_s < self.again_s
+        return fields(self.moves_s if rests else self.t_s) if self.sees else None
 
 
 def event(name, host_ms):
@@ -88,6 +89,12 @@ def test_a_body_that_keeps_its_shape_is_kept_at_the_ends_only():
     recording = kept(Watcher(moves_s=0.4))
 
     assert [taken.host_ms for taken in recording.slices] == [0, 120, 320, 520, 1003, 1103]
+
+
+def test_the_end_of_a_rest_is_kept_so_that_the_nearest_slice_is_never_one_after_it():
+    recording = kept(Watcher(moves_s=0.4, again_s=1.1), until_ms=1300)
+
+    assert [taken.host_ms for taken in recording.slices] == [0, 120, 320, 520, 920, 1120, 1303, 1403]
 
 
 def test_who_keeps_no_scenes_keeps_no_slices():
