@@ -7,23 +7,13 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from hil_sim.robots.bonds import odd
 from hil_sim.robots.keys import BATTERY, BENCH, KEYS, KINDS, UNITS, Key, features_of, keys_of
 from hil_sim.robots.texts import CHOICES, TEXTS, Sections, Text, mistakes_in, texts_of
 
 STANDINGS = ("paper", "read", "measured", "derived", "assumed", "fitted")
 NAMED = {"read": "read where", "measured": "measured on what"}  # standings that need a source
 FOR_THE_READER = ("derived",)  # a section that is held to the form but not to the table of keys
-INSIDE = ("hub.radius_mm", "hub.attach_mm", "core.radius_mm", "core.attach_mm")  # the shell
-RISING = ("martensite_finish", "martensite_start", "austenite_start", "austenite_finish")
-NEEDS = (  # a choice, the words of it that need one of some numbers, and why
-    ("fingers.contact", ("stick", "coulomb"), ("object.width_mm",), "two tips on one line are over-constrained"),
-    ("fingers.motion", ("dynamic",), ("object.mass_g",), "what has no mass is moved by no dynamics"),
-    ("fingers.motion", ("dynamic",), ("object.width_mm", "object.height_mm"), "without extent it has no inertia"),
-)
-PAIRS = (
-    ("material.youngs_modulus_kpa", "material.viscosity_kpa_s"),
-    ("material.youngs_modulus_2_kpa", "material.viscosity_2_kpa_s"),
-)  # springs with the dashpots in series
 ALSO = {"ground.friction_ratio": "object.friction_ratio"}  # by which name a robot without ground has the same
 FROM_ADDRESS = "set by the robot's address"
 
@@ -48,6 +38,7 @@ class Check:
         self.entries: dict[str, Entry] = {}
         self.mistakes: list[str] = []
         self._path = path
+        self._overrides = overrides
         self._lines = line_numbers(text)
         self._meant: set[str] = set()  # keys that the file tried to give
         sections = {"": {key: value for key, value in data.items() if not isinstance(value, dict)}}
@@ -66,8 +57,9 @@ class Check:
         for name, value in overrides.items():
             self._override(name, value)
         self._ranges()
-        self._constraints(overrides)
-        self._pairs()
+        values = {name: entry.value for name, entry in self.entries.items()}
+        for name, what in odd(values, self.choices):
+            self._blame(name, what)
         if self.choices.get("press.indenter") == "polygon" and "corners_mm" not in sections.get("press", {}):
             self._say("[press]", "indenter polygon needs corners_mm = [[x, y], ...] in [press], x from the axis")
 
@@ -159,51 +151,19 @@ class Check:
         for key in self.rows:
             entry = self.entries.get(key.name)
             if entry and not key.allows(entry.value):
-                self._wrong(entry, key.range)
-        shell = self.entries.get("shell.radius_mm")
-        for name in INSIDE:
-            entry = self.entries.get(name)
-            if entry and shell and entry.value >= shell.value:
-                self._wrong(entry, f"below shell.radius_mm, {shell.value:g}")
-        names = [f"coils.{end}_degc" for end in RISING]
-        values = [self.entries[name].value for name in names if name in self.entries]
-        if len(values) == len(names) and not values[0] < values[1] <= values[2] < values[3]:
-            self._say(names[0], f"the temperatures must rise: {', '.join(names)}")
+                self._blame(key.name, f"{key.name} is {entry.value:g}, it must be {key.range}")
 
-    def _constraints(self, overrides: Mapping[str, str]) -> None:
-        """Note choices that cannot be with the numbers of the object."""
-        for name, words, keys, why in NEEDS:
-            choice, numbers = self.choices.get(name), [self.entries.get(key) for key in keys]
-            if choice not in words or any(number is None or number.value > 0 for number in numbers):
-                continue
-            key = name.partition(".")[2]
-            what = f"needs {' or '.join(keys)} above 0: {why}"
-            if name in overrides:
-                self.mistakes.append(f"{key}={choice} {what}")
-            else:
-                self._say(name, f"{key} {choice} {what}")
-
-    def _pairs(self) -> None:
-        """Note a spring without the dashpot that is in series with it, and the other way round."""
-        for pair in PAIRS:
-            none, other = sorted(pair, key=self._value)
-            if self._value(none) == 0.0 < self._value(other):
-                what = f"{other} is {self._value(other):g} and {none} 0: a branch has both, or neither"
-                self._blame(self.entries.get(none, self.entries[other]), what)
-
-    def _value(self, name: str) -> float:
-        return self.entries[name].value if name in self.entries else 0.0
-
-    def _wrong(self, entry: Entry, allowed: str) -> None:
-        """Note that a number is none that a robot may have, in the file or from the address."""
-        self._blame(entry, f"{entry.name} is {entry.value:g}, it must be {allowed}")
-
-    def _blame(self, entry: Entry, what: str) -> None:
-        """Note a mistake at a number of the file, or at the one that the address has put in its place."""
-        if entry.source == FROM_ADDRESS:
-            self.mistakes.append(f"set={entry.name}: {what}")
+    def _blame(self, name: str, what: str) -> None:
+        """Note a mistake at a number or choice of the file, or at what the address has put in its place."""
+        key, choice = name.partition(".")[2], self.choices.get(name)
+        if choice is not None and name in self._overrides:
+            self.mistakes.append(f"{key}={choice} {what}")
+        elif choice is not None:
+            self._say(name, f"{key} {choice} {what}")
+        elif self.entries[name].source == FROM_ADDRESS:
+            self.mistakes.append(f"set={name}: {what}")
         else:
-            self._say(entry.name, what)
+            self._say(name, what)
 
 
 def kind_of(sections: Sections) -> str:

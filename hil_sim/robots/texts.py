@@ -14,7 +14,7 @@ from hil_sim.robots.keys import COILS, FINGERS, PRESS, RING, SERVOS, SHELL, SPHE
 
 CHIPS = (96, 97)  # PWM chips of the board
 PINS = (8, 9, 10)  # of the board, for servos
-LABELS = {FINGERS: '["R", "L"], the right finger first', PRESS: '["P"]'}
+JOINTS = {FINGERS: (2, '["R", "L"], the right finger first'), PRESS: (1, '["P"]')}  # how many, and how they are written
 PLACES = {
     "centres_percent": "of the block's width and height",
     "centres_mm": "in the coordinates of the block",
@@ -82,9 +82,9 @@ def mistakes_in(sections: Sections, features: Collection[str]) -> Mistakes:
             yield text.name, f'{text.key}: write it as {text.key} = "text"'
     if COILS in features:
         yield from _coils(sections, SPHERE in features)
-    for section, example in LABELS.items():
+    for section, (count, example) in JOINTS.items():
         if section in features:
-            yield from _joints(sections, section, example)
+            yield from _joints(sections, section, count, example)
     if PRESS in features:
         yield from _pressed(sections)
 
@@ -143,10 +143,9 @@ def _outputs(outputs: object, labels: list[str]) -> Mistakes:
         seen[chip, output] = label
 
 
-def _joints(sections: Sections, section: str, example: str) -> Mistakes:
-    """Yield what is wrong with the labels of the joints, as many as the example has, and with their servos' pins."""
+def _joints(sections: Sections, section: str, count: int, example: str) -> Mistakes:
+    """Yield what is wrong with the labels of so many joints, and with the pins of their servos."""
     labels, pins = sections.get(section, {}).get("labels"), sections.get("wiring", {}).get("pins")
-    count = example.count('"') // 2
     if not (isinstance(labels, list) and len(labels) == count and all(isinstance(label, str) for label in labels)):
         if labels is not None:
             yield f"{section}.labels", f"labels: write them as {example}"
