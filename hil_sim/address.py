@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 from math import isfinite
 from urllib.parse import unquote
 
-from hil_sim.robots.check import near
 from hil_sim.robots.texts import CHOICES
+from hil_sim.spelling import near
 
 SHORT = {
     "slope": "ground.slope_deg",

@@ -20,10 +20,10 @@ from hil_sim.loadcells import cell_input, load_input
 from hil_sim.meshfile import MeshFileError
 from hil_sim.physics.block.material import BlockError
 from hil_sim.physics.hand.fingertip import HandError
-from hil_sim.robots.check import near
 from hil_sim.robots.file import PROFILES, RobotFile, RobotFileError, load
 from hil_sim.robots.keys import COILS, FINGERS, KINDS, PRESS, RING
 from hil_sim.soundness import CameApart
+from hil_sim.spelling import near
 from hil_sim.supply import Battery
 from hil_sim.worlds import cpython, micropython, preset
 from hil_sim.worlds.image import Image

@@ -22,7 +22,7 @@ from typing import Any
 from hil_sim.bench import Bench
 from hil_sim.faults.happening import Happening, schedule
 from hil_sim.faults.table import read
-from hil_sim.robots.check import near
+from hil_sim.spelling import near
 
 TOP = ("seed", "fault")
 KEYS = ("name", "at_ms", "for_ms")

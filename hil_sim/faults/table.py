@@ -11,7 +11,7 @@ from hil_sim.devices.lsm6ds3tr import Lsm6ds3tr
 from hil_sim.faults import gauges, limbs, lines, parts
 from hil_sim.faults.limbs import camera, of_a_joint
 from hil_sim.faults.parts import Mishap, Value, imu, of_a_coil, on_off, once
-from hil_sim.robots.check import near
+from hil_sim.spelling import near
 
 
 @dataclass(frozen=True)

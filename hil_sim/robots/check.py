@@ -1,7 +1,7 @@
 """Everything that can be wrong with a robot file, found in one pass and said as file:line and what to do."""
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
 from pathlib import Path
@@ -10,6 +10,7 @@ from typing import Any
 from hil_sim.robots.bonds import odd
 from hil_sim.robots.keys import BATTERY, BENCH, KEYS, KINDS, UNITS, Key, features_of, keys_of
 from hil_sim.robots.texts import CHOICES, TEXTS, Sections, Text, mistakes_in, texts_of
+from hil_sim.spelling import many, near
 
 STANDINGS = ("paper", "read", "measured", "derived", "assumed", "fitted")
 NAMED = {"read": "read where", "measured": "measured on what"}  # standings that need a source
@@ -199,17 +200,6 @@ def line_numbers(text: str) -> dict[str, int]:
 def unit_of(key: str) -> str:
     """Return the longest unit that the key ends in, or nothing."""
     return max((unit for unit in UNITS if key.endswith(f"_{unit}")), key=len, default="")
-
-
-def near(word: str, known: Collection[str]) -> str:
-    """Return "; did you mean X?" if one of the known words is like it."""
-    match = get_close_matches(word, sorted(known), 1)
-    return f"; did you mean {match[0]}?" if match else ""
-
-
-def many(word: str) -> bool:
-    """Return whether this is a word for several things."""
-    return word.endswith("s") and not word.endswith("ss")
 
 
 def is_number(value: object) -> bool:

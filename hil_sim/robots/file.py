@@ -21,9 +21,10 @@ from hil_sim.physics.battery import BatteryNumbers
 from hil_sim.physics.bodies import Attitude, GroundNumbers, RingNumbers, SphereNumbers, StartNumbers
 from hil_sim.physics.coilset import CoilNumbers
 from hil_sim.physics.hand.numbers import HandNumbers
-from hil_sim.robots.check import Check, Entry, near
+from hil_sim.robots.check import Check, Entry
 from hil_sim.robots.keys import COILS, FINGERS, KINDS, PRESS, RING, SHELL, SPHERE
 from hil_sim.robots.pressfile import centres_of, press_numbers
+from hil_sim.spelling import near
 
 FOLDER = Path(__file__).parent
 PROFILES = Path(__file__).parents[2] / "firmware" / "robots"
