@@ -134,3 +134,14 @@ def test_however_stiff_the_block_the_servo_presses_with_its_stall_force_at_most(
 
     assert max(forces) == pytest.approx(40.0, rel=1e-3)
     assert max(forces) < 40.0 * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize("modulus_kpa", [1e4, 1e5])
+def test_however_stiff_the_block_the_servo_pulls_at_glue_with_its_stall_force_at_most(modulus_kpa):
+    stiff = f"material.youngs_modulus_kpa:{modulus_kpa:g}", f"material.viscosity_kpa_s:{5 * modulus_kpa:g}"
+    plant = driven(plant_of(*stiff, "indenter.pull_off_n:10000", options="indenter=bonded"), 1.0, 1.0)
+
+    forces = [plant.load_n for _ in drive(plant, 1.0, -5.0)]
+
+    assert min(forces) == pytest.approx(-40.0, rel=1e-3)
+    assert min(forces) > -40.0 * (1.0 + 1e-9)

@@ -145,12 +145,13 @@ class PressPlant:
         """Return press and block after a step to there [m], or to where the servo has the force to get."""
         numbers = self.numbers
         there = follow(self.press, before, numbers.dt, at, numbers.backlash, numbers.tool_mass * numbers.g)
-        if there.depth <= before.depth or there.force <= numbers.screw.stall_n:
+        sign = 1.0 if there.depth > before.depth else -1.0
+        if there.depth == before.depth or sign * there.force <= numbers.screw.stall_n:
             return there
-        there = self.press.advance(before, numbers.dt, force=numbers.screw.stall_n)
-        if there.depth < before.depth:  # the screw does not give way
+        there = self.press.advance(before, numbers.dt, force=sign * numbers.screw.stall_n)
+        if sign * (there.depth - before.depth) < 0.0:  # the screw does not give way
             there = self.press.advance(before, numbers.dt, depth=before.depth)
-        self.screw.at_mm = 1e3 * (there.depth + numbers.backlash)
+        self.screw.at_mm = 1e3 * (there.depth + (numbers.backlash if sign > 0.0 else 0.0))  # pulled, it hangs
         return there
 
     @property
