@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from host.gait import tree, units
+from host.gait import channels, tree, units
 from host.gait.diagnostics import did_you_mean
 from host.gait.plan import Aim, Op
 from host.gait.scope import Chosen, Scope
@@ -21,21 +21,21 @@ def declare_circle(node: tree.Circle, scope: Scope) -> None:
     name = node.name.text
     if name in scope.circles:
         scope.problems.add(node.name.place, "E161", f"`{name}` is declared twice")
-    masks = [scope.channel(coil) for coil in node.coils]
+    masks = [channels.channel(coil, scope) for coil in node.coils]
     scope.circles[name] = ()  # known, and reported if nothing better follows
-    if None in masks or scope.coils(node.coils) is None:
+    if None in masks or channels.coils(node.coils, scope) is None:
         return
-    channels = tuple(mask.bit_length() - 1 for mask in masks if mask is not None and mask & (mask - 1) == 0)
-    labels = [scope.profile.labels[channel] for channel in channels]
+    numbers = tuple(mask.bit_length() - 1 for mask in masks if mask is not None and mask & (mask - 1) == 0)
+    labels = [scope.profile.labels[channel] for channel in numbers]
     aimless = [label for label in labels if direction(label) is None]
     if aimless and scope.profile.imu is not None:
         scope.problems.add(node.place, "E137", f"coil {aimless[0]} has no direction")
-    elif len(channels) != len(masks):
+    elif len(numbers) != len(masks):
         scope.problems.add(node.place, "E137", "a circle is made of single coils, not of groups")
-    elif not 2 <= len(channels) <= program.CIRCLE_MAX:
-        scope.problems.add(node.place, "E137", f"{len(channels)} coils, a circle has 2 to {program.CIRCLE_MAX}")
+    elif not 2 <= len(numbers) <= program.CIRCLE_MAX:
+        scope.problems.add(node.place, "E137", f"{len(numbers)} coils, a circle has 2 to {program.CIRCLE_MAX}")
     else:
-        scope.circles[name] = channels
+        scope.circles[name] = numbers
 
 
 def let(node: tree.Let, scope: Scope, step: int) -> list[Op]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from host.gait import tree
+from host.gait import channels, tree
 from host.gait.diagnostics import did_you_mean
 from host.gait.scope import EVERY, CellSet, Chosen, Scope
 from host.gait.tree import Name
@@ -30,25 +30,20 @@ def is_cell(node: tree.Coil, scope: Scope) -> bool:
 
 def masked(nodes: Iterable[tree.Coil], scope: Scope) -> int | None:
     """Return the mask of a list of force cells and arguments; what is none of them is reported."""
-    mask, sound = 0, True
-    for node in nodes:
-        named = _mask(node, scope)
-        if named is None:
-            sound = False
-            continue
-        if mask & named:
-            twice = " ".join(label for label, bit in known(scope).items() if bit & mask & named and label != EVERY)
-            scope.problems.add(node.place, "E136", f"force cell {twice} is named twice")
-        mask |= named
-    return mask if sound else None
+
+    def named(mask: int) -> str:
+        labels = (label for cell, label in enumerate(scope.profile.cell_labels) if mask >> cell & 1)
+        return f"force cell {' '.join(labels)}"
+
+    return channels.union([(node, _mask(node, scope)) for node in nodes], named, scope)
 
 
 def _mask(node: tree.Coil, scope: Scope) -> int | None:
     if isinstance(node, Name):
         if node.text in known(scope):
             return known(scope)[node.text]
-        if node.text in scope.groups():
-            kind = scope.word(scope.groups()[node.text])
+        if node.text in channels.known(scope):
+            kind = scope.word(channels.known(scope)[node.text])
             scope.problems.add(node.place, "E199", f"{node.text} is a {kind}, not a force cell", _offer(scope))
         else:
             message = f"the robot {scope.profile.robot} has no force cell `{node.text}`"

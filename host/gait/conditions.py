@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from host.gait import sources, tree
+from host.gait import channels, sources, tree
 from host.gait.diagnostics import did_you_mean
 from host.gait.scope import Scope
 from host.gait.sources import Sources
@@ -44,7 +44,7 @@ def _facing(node: tree.Facing, scope: Scope) -> program.Condition | None:
     """Return the condition that a coil, or one of a group, is the nearest to down."""
     scope.sees(node.place)
     kept = scope.aimed(node.coil)
-    mask = scope.coils([node.coil]) if kept is None else kept
+    mask = channels.coils([node.coil], scope) if kept is None else kept
     if node.way.text != DOWN:
         _unmeasured(node.way, [DOWN], scope)
         return None

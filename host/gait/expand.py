@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from host.gait import aims, cells, motions, orders, tree, units
+from host.gait import aims, cells, channels, motions, orders, tree, units
 from host.gait.declare import check_head, declare_circles, declare_defs, declare_params
 from host.gait.diagnostics import Problems, did_you_mean
 from host.gait.lines import code_part
@@ -179,7 +179,7 @@ class _Expander:
         if all(cells.is_cell(each, scope) for each in node.coils):
             mask = cells.masked(node.coils, scope)
             return CellSet(mask) if mask else None
-        mask = scope.channels(node.coils)
+        mask = channels.masked(node.coils, scope)
         return CoilSet(mask) if mask else None
 
     def _step(self, place: Place, where: Where) -> int:

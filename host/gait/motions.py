@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from host.gait import clauses, tree, units
+from host.gait import channels, clauses, tree, units
 from host.gait.plan import Delay, Move, Op, Orient, Press
 from host.gait.scope import Scope
 
@@ -15,7 +15,7 @@ def move(node: tree.Move, scope: Scope, step: int) -> list[Op]:
     clauses.once(node.clauses, scope)
     if not node.joints:
         scope.problems.add(node.place, "E190", "which joints?", "name them after `move`")
-    mask, unit = scope.joints(node.joints), scope.unit
+    mask, unit = channels.joints(node.joints, scope), scope.unit
     target = clauses.value(node, "to", scope, unit.kind, -CENTI_MAX, CENTI_MAX)
     time_ms = clauses.time_ms(node, "over", scope)
     overlap_ms = clauses.part_ms(node, "overlap", scope)

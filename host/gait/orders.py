@@ -5,7 +5,7 @@ Each returns the ops of one statement, or none when something about it is wrong 
 
 from __future__ import annotations
 
-from host.gait import clauses, tree, units
+from host.gait import channels, clauses, tree, units
 from host.gait.conditions import condition
 from host.gait.diagnostics import did_you_mean
 from host.gait.plan import Delay, Fire, Guard, Op, Wait
@@ -22,7 +22,7 @@ def fire(node: tree.Fire, scope: Scope, step: int) -> list[Op]:
     if not node.coils:
         scope.problems.add(node.place, "E130", "which coils?", "name them after `fire`")
     kept = scope.aimed(node.coils[0]) if len(node.coils) == 1 else None
-    mask = scope.coils(node.coils) if kept is None else scope.reach.get(kept)
+    mask = channels.coils(node.coils, scope) if kept is None else scope.reach.get(kept)
     duty = clauses.value(node, "at", scope, units.SHARE, 1, 1000)
     time_ms = clauses.time_ms(node, "for", scope)
     cutoff = clauses.value(node, "until", scope, units.TEMPERATURE, 1, CUTOFF_MAX_DECIDEGC)

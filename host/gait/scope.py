@@ -5,7 +5,7 @@ A value that cannot be worked out is reported once and is None from then on, so 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
@@ -17,7 +17,6 @@ from host.gait.units import Quantity, UnitError
 from host.profile import Profile
 
 EVERY = "all"
-FIRE_IT = "fire it: `fire {} at 60 % for 600 ms`"
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,42 +99,6 @@ class Scope:
             return None
         return number
 
-    def coils(self, nodes: Iterable[tree.Coil]) -> int | None:
-        """Return the mask of a list of coils; a joint among them is reported."""
-        help = f"move it: `move {{}} to {self.unit.example} over 2 s`"
-        return self._all_of(nodes, self.profile.coil_labels, "E139", help)
-
-    def joints(self, nodes: Iterable[tree.Coil]) -> int | None:
-        """Return the mask of a list of joints; a coil among them is reported."""
-        return self._all_of(nodes, self.profile.joint_labels, "E191", FIRE_IT)
-
-    def channels(self, nodes: Iterable[tree.Coil]) -> int | None:
-        """Return the mask of a list of coils, joints, groups and arguments."""
-        mask, sound = 0, True
-        for node in nodes:
-            named = self.channel(node)
-            if named is None:
-                sound = False
-                continue
-            if mask & named:
-                twice = " ".join(self.profile.named(mask & named))
-                self.problems.add(node.place, "E136", f"{self.word(mask & named)} {twice} is named twice")
-            mask |= named
-        return mask if sound else None
-
-    def channel(self, node: tree.Coil) -> int | None:
-        """Return the mask of one coil, joint, group or argument."""
-        if isinstance(node, Reference):
-            return self._argument(node)
-        known = self.groups()
-        if node.text in self.profile.cell_labels:
-            self._cell(node, node.text)
-        elif node.text not in known:
-            message = f"the robot {self.profile.robot} has no {self.word()} `{node.text}`"
-            help = did_you_mean(node.text, known) or f"it has: {' '.join(known)}"
-            self.problems.add(node.place, "E131", message, help)
-        return known.get(node.text)
-
     def aimed(self, node: tree.Coil) -> int | None:
         """Return the place of a coil that the robot chooses, or None when this is another coil."""
         value = self.known.get(node.name) if isinstance(node, Reference) else None
@@ -173,15 +136,6 @@ class Scope:
         kinds = (("coil", self.profile.coil_labels), ("joint", self.profile.joint_labels))
         return " or ".join(word for word, labels in kinds if set(labels) & set(named))
 
-    def groups(self) -> dict[str, int]:
-        """Return the mask of every coil, joint and group by its name."""
-        labels = self.profile.labels
-        known = {label: 1 << channel for channel, label in enumerate(labels)}
-        known.setdefault(EVERY, (1 << len(labels)) - 1)
-        for name in self.profile.groups:
-            known[name] = self.profile.mask([name])
-        return known
-
     def lookup(self, node: Reference) -> Value:
         """Return what `$name` stands for."""
         known = self.known
@@ -218,36 +172,6 @@ class Scope:
             self.problems.add(node.place, "E165", f"`${node.name}` is a {what}, not a value")
             return None
         return value
-
-    def _cell(self, node: tree.Coil, name: str) -> None:
-        """Report a force cell that stands where a channel is needed."""
-        message, help = f"{name} is a force cell, not a {self.word()}", f"ask it: `{name}.pressure > 5 kPa`"
-        self.problems.add(node.place, "E199", message, help)
-
-    def _argument(self, node: Reference) -> int | None:
-        """Return the mask of the channels that an argument stands for."""
-        value = self.lookup(node)
-        if isinstance(value, Quantity):
-            self.problems.add(node.place, "E165", f"`${node.name}` is {value}, not a {self.word()}")
-        elif isinstance(value, CellSet):
-            self._cell(node, f"${node.name}")
-        elif isinstance(value, Chosen):
-            help = "fire it by itself"
-            self.problems.add(node.place, "E138", f"`${node.name}` is chosen by the robot as it runs", help)
-        return value.mask if isinstance(value, CoilSet) else None
-
-    def _all_of(self, nodes: Iterable[tree.Coil], labels: tuple[str, ...], code: str, help: str) -> int | None:
-        """Return the mask of a list whose channels must all be among `labels`; `all` is all of these."""
-        known, nodes = self.profile.mask(labels), tuple(nodes)
-        if len(nodes) == 1 and isinstance(nodes[0], Name) and nodes[0].text == EVERY and labels:
-            return self.groups()[EVERY] & known or None
-        mask = self.channels(nodes)
-        for node in nodes if mask is not None and mask & ~known else ():
-            others = self.profile.named((self.channel(node) or 0) & ~known)
-            if others:
-                what = f"{others[0]} is a {self.word(self.profile.mask(others))}"
-                self.problems.add(node.place, code, what, help.format(others[0]))
-        return mask if mask is None or not mask & ~known else None
 
     def _wrong_kind(self, node: Expression, quantity: Quantity, kind: str) -> None:
         place: Place = node.place
