@@ -4,6 +4,7 @@ import json
 import re
 import shlex
 import subprocess
+from contextlib import chdir
 from functools import cache
 from pathlib import Path
 
@@ -113,15 +114,41 @@ def table(head: str) -> dict[str, tuple[float, float]]:
     return {name: (float(alone), float(bench)) for name, alone, bench in rows}
 
 
-def test_the_material_that_is_found_is_that_of_the_page(tmp_path, monkeypatch, capsys):
-    lines = next(block for block in BLOCKS if "fit press" in block).splitlines()
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "gaits").symlink_to(ROOT / "gaits")
-    (tmp_path / "out").mkdir()
-    softrig(shlex.split(lines[0])[1:], standalone_mode=False)
+@pytest.fixture(scope="module")
+def played(tmp_path_factory):
+    """Return what runs the commands of a block, once, and tells in which folder."""
+
+    @cache
+    def play(block: str) -> Path:
+        folder = tmp_path_factory.mktemp("page")
+        for name in ("gaits", "hil_sim"):
+            (folder / name).symlink_to(ROOT / name)
+        (folder / "out").mkdir()
+        with chdir(folder):
+            exec(SCRIPTS[0], {})
+            for line in block.splitlines():
+                if line.startswith("softrig "):
+                    softrig(shlex.split(line)[1:], standalone_mode=False)
+                else:
+                    subprocess.run(line, shell=True, check=True)
+        return folder
+
+    return play
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=lambda block: " ".join(block.split()[:2]))
+def test_the_commands_of_the_page_run(block, played):
+    folder = played(block)
+
+    written = re.findall(r"out/\S+", block)
+    assert [name for name in written if not (folder / name).stat().st_size] == []
+
+
+def test_the_material_that_is_found_is_that_of_the_page(played, capsys):
+    log = played(next(block for block in BLOCKS if "fit press" in block)) / "out/flat.mcap"
     capsys.readouterr()
 
-    softrig(["fit", "press", "out/flat.mcap", "--json"], standalone_mode=False)
+    softrig(["fit", "press", str(log), "--json"], standalone_mode=False)
 
     found = json.loads(capsys.readouterr().out)
     rows = re.findall(
@@ -132,24 +159,6 @@ def test_the_material_that_is_found_is_that_of_the_page(tmp_path, monkeypatch, c
         assert found[key]["value"] == pytest.approx(value, abs=found[key]["error"]), name
         assert (found[key]["low"], found[key]["high"]) == pytest.approx((low, high), abs=2 * found[key]["error"]), name
         assert low <= planted <= high
-
-
-@pytest.mark.parametrize("block", BLOCKS, ids=lambda block: " ".join(block.split()[:2]))
-def test_the_commands_of_the_page_run(block, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    for name in ("gaits", "hil_sim"):
-        (tmp_path / name).symlink_to(ROOT / name)
-    (tmp_path / "out").mkdir()
-    exec(SCRIPTS[0], {})
-
-    for line in block.splitlines():
-        if line.startswith("softrig "):
-            softrig(shlex.split(line)[1:], standalone_mode=False)
-        else:
-            subprocess.run(line, shell=True, check=True)
-
-    written = re.findall(r"out/\S+", block)
-    assert [name for name in written if not (tmp_path / name).stat().st_size] == []
 
 
 @pytest.mark.parametrize(

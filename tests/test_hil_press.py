@@ -141,7 +141,7 @@ def test_a_punch_presses_harder_with_glue_than_without_by_the_ratio_of_their_clo
 
 
 def test_under_a_constant_force_the_block_creeps():
-    seen = run(CREEP)
+    seen = run(CREEP, f"sim:press?{COARSE}")
     pressing = [row for row in seen.rows if row.force_n > 4.9]
     steady = [row for row in pressing if pressing[0].t_s + 1.0 < row.t_s < pressing[-1].t_s - 0.2]
     speeds = [(b.depth_mm - a.depth_mm) / (b.t_s - a.t_s) for a, b in zip(steady, steady[200:], strict=False)]
