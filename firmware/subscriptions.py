@@ -50,7 +50,7 @@ class Subscriptions:
 
     def __init__(self, core) -> None:
         self._readings = Readings(core)
-        self._parts = _parts(core)
+        self._counts = _counts(core)
         self.forget()
 
     def forget(self) -> None:
@@ -70,7 +70,7 @@ class Subscriptions:
             usual = tuple(numbers) == variables.USUAL
             mine.form = USUAL_FORM if usual else 1 + request % 255
             mine.readers = () if usual else [self._readings.readers[number] for number in numbers]
-            mine.layout = variables.layout(numbers, self._parts)
+            mine.layout = variables.layout(numbers, self._counts)
             mine.room = struct.calcsize(mine.layout) + BESIDE
             mine.on_change, mine.due_ms = on_change, now_ms
             mine.last, mine.blocked = b"", False
@@ -81,7 +81,7 @@ class Subscriptions:
         """Send the usual variables for a while to whoever asks, whichever session there is."""
         mine = self._slots[SLOTS]
         if not mine.period_ms:
-            mine.layout = variables.layout(variables.USUAL, self._parts)
+            mine.layout = variables.layout(variables.USUAL, self._counts)
             mine.room = struct.calcsize(mine.layout) + BESIDE
             mine.due_ms = now_ms
         mine.period_ms = max(period_ms, WATCH_PERIOD_MS)
@@ -111,7 +111,7 @@ class Subscriptions:
         for number in numbers:
             if number >= len(variables.VARIABLES):
                 raise Refused(codes.UNKNOWN_VARIABLE, 255, number, len(variables.VARIABLES) - 1)
-        octets = variables.size(numbers, self._parts)
+        octets = variables.size(numbers, self._counts)
         if not 0 < octets <= VALUES_MAX:
             raise Refused(codes.RECORD_LIMIT, 255, octets, VALUES_MAX if octets else 1)
 
@@ -146,8 +146,8 @@ class Subscriptions:
         return True
 
 
-def _parts(core) -> variables.Parts:
+def _counts(core) -> variables.Counts:
     """Return how many of what a record may tell the robot has."""
     profile = core.profile
     cameras, loads = 1 if profile.camera else 0, 1 if profile.load else 0
-    return variables.Parts(len(profile.coils), len(profile.joints), cameras, loads, len(profile.cells))
+    return variables.Counts(len(profile.coils), len(profile.joints), cameras, loads, len(profile.cells))

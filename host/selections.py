@@ -132,9 +132,9 @@ class _Slot:
         return True
 
 
-def _counts(parts: Parts) -> variables.Parts:
+def _counts(parts: Parts) -> variables.Counts:
     """Return of how many of what a robot has a record tells."""
-    return variables.Parts(len(parts.coils), len(parts.joints), parts.cameras, parts.loads, len(parts.cells))
+    return variables.Counts(len(parts.coils), len(parts.joints), parts.cameras, parts.loads, len(parts.cells))
 
 
 def _nearest(name: str) -> str:

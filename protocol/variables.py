@@ -8,15 +8,15 @@ in the order in which they were asked for, little endian, no padding; what one m
 line they are veiled: a coil that is off is all zeros, and on a small board each zero costs more to stuff than the rest.
 
     numbers = [number("state"), number("coil_decidegc")]
-    size(numbers, parts(coils=8))
-    state, coil_decidegc = unpack(numbers, veiled(values), parts(coils=8))
+    size(numbers, counts(coils=8))
+    state, coil_decidegc = unpack(numbers, veiled(values), counts(coils=8))
 """
 
 import struct
 from collections import namedtuple
 
 Variable = namedtuple("Variable", ("name", "letter"))
-Parts = namedtuple("Parts", ("coils", "joints", "cameras", "loads", "cells"))  # how many of each a robot has
+Counts = namedtuple("Counts", ("coils", "joints", "cameras", "loads", "cells"))  # how many of each a robot has
 MARKS = "*+@!#"  # behind the letter of a variable of each of them
 
 VARIABLES = (
@@ -63,35 +63,35 @@ def number(name: str) -> int:
     return -1
 
 
-def parts(coils: int, joints: int = 0, cameras: int = 0, loads: int = 0, cells: int = 0) -> Parts:
+def counts(coils: int, joints: int = 0, cameras: int = 0, loads: int = 0, cells: int = 0) -> Counts:
     """Return how many coils, joints, cameras, load cells and force cells a robot has."""
-    return Parts(coils, joints, cameras, loads, cells)
+    return Counts(coils, joints, cameras, loads, cells)
 
 
-def layout(numbers, parts: Parts) -> str:
-    """Return the struct format of a record of these variables of a robot with these parts."""
+def layout(numbers, counts: Counts) -> str:
+    """Return the struct format of a record of these variables of a robot that has so many of each."""
     form = ["<"]
     for place in numbers:
         letter = VARIABLES[place].letter
-        count = _count(letter, parts)
+        count = _count(letter, counts)
         form.append(letter if count < 0 else f"{count}{letter[0]}" if count else "")
     return "".join(form)
 
 
-def size(numbers, parts: Parts) -> int:
+def size(numbers, counts: Counts) -> int:
     """Return how many bytes the values of these variables take."""
-    return struct.calcsize(layout(numbers, parts))
+    return struct.calcsize(layout(numbers, counts))
 
 
-def unpack(numbers, values: bytes, parts: Parts) -> list:
+def unpack(numbers, values: bytes, counts: Counts) -> list:
     """Return the value of each variable, a tuple where there are several or none; ValueError when they do not fit."""
-    form = layout(numbers, parts)
+    form = layout(numbers, counts)
     if struct.calcsize(form) != len(values):
         raise ValueError(f"{len(values)} bytes of values, expected {struct.calcsize(form)}")
     flat = struct.unpack(form, values)
     found, at = [], 0
     for place in numbers:
-        count = _count(VARIABLES[place].letter, parts)
+        count = _count(VARIABLES[place].letter, counts)
         if count < 0:
             found.append(flat[at])
             at += 1
@@ -101,9 +101,9 @@ def unpack(numbers, values: bytes, parts: Parts) -> list:
     return found
 
 
-def _count(letter: str, parts: Parts) -> int:
+def _count(letter: str, counts: Counts) -> int:
     """Return how many values a variable of that letter has, or -1 for a single one that every robot has."""
-    return parts[MARKS.index(letter[1])] if len(letter) == 2 else -1
+    return counts[MARKS.index(letter[1])] if len(letter) == 2 else -1
 
 
 def veiled(values: bytes) -> bytes:

@@ -186,7 +186,7 @@ class FakeRobot:
         """Send telemetry, or what is that late."""
         degrees = [250 + duty for duty in self.duty]
         parts = self.parts
-        counts = variables.Parts(len(self.duty), len(self.joints), parts.cameras, parts.loads, len(parts.cells))
+        counts = variables.Counts(len(self.duty), len(self.joints), parts.cameras, parts.loads, len(parts.cells))
         values = variables.veiled(struct.pack(
             variables.layout(variables.USUAL, counts),
             self.state, 0, self.supply_mv, 0, 231, *self.attitude.values(), *self.duty, *degrees,

@@ -378,7 +378,7 @@ class Rig:
 
 def usual(telemetry, coils: int = 8) -> list:
     """Return the usual variables of a record of telemetry."""
-    return variables.unpack(variables.USUAL, variables.veiled(telemetry.values), variables.parts(coils))
+    return variables.unpack(variables.USUAL, variables.veiled(telemetry.values), variables.counts(coils))
 
 
 def refusal(answers):

@@ -195,7 +195,7 @@ def test_the_usual_variables_of_any_robot_are_as_long_as_its_profile_says(tmp_pa
     rig.say(messages.SUBSCRIBE, slot=0, period_ms=50, on_change=0, variables=b"")
     rig.run(100)
 
-    counts = variables.parts(len(rig.profile.coils), len(rig.profile.joints), 1 if rig.profile.camera else 0)
+    counts = variables.counts(len(rig.profile.coils), len(rig.profile.joints), 1 if rig.profile.camera else 0)
     record = next(body for kind, body in rig.got if kind == "telemetry")
     values = variables.unpack(variables.USUAL, variables.veiled(record.values), counts)
     told = dict(zip(variables.USUAL, values, strict=True))

@@ -28,7 +28,7 @@ def told(rig, *names: str) -> list:
     numbers = [variables.number(name) for name in names]
     rig.say(messages.SUBSCRIBE, slot=1, period_ms=20, on_change=0, variables=bytes(numbers))
     record = [body for kind, body in rig.run(60) if kind == "telemetry" and body.slot == 1][-1]
-    return variables.unpack(numbers, variables.veiled(record.values), variables.parts(0, 1, 0, 1, 6))
+    return variables.unpack(numbers, variables.veiled(record.values), variables.counts(0, 1, 0, 1, 6))
 
 
 @pytest.mark.parametrize(("counts", "force_mn"), [(819, 0), (820, 8), (818, -8), (1819, 8000), (20, -6392)])
@@ -49,7 +49,7 @@ def test_the_usual_variables_end_with_force_and_pressures(rig):
     rig.say(messages.SUBSCRIBE, slot=0, period_ms=20, on_change=0, variables=b"")
     record = [body for kind, body in rig.run(100) if kind == "telemetry"][-1]
 
-    values = variables.unpack(variables.USUAL, variables.veiled(record.values), variables.parts(0, 1, 0, 1, 6))
+    values = variables.unpack(variables.USUAL, variables.veiled(record.values), variables.counts(0, 1, 0, 1, 6))
 
     assert values[-2:] == [(8000,), (10_000,) * 6]
 

@@ -55,9 +55,9 @@ def test_every_variable_can_be_read_and_fits_its_type(rig):
     for number, reader in enumerate(readers):
         values = []
         reader(values)
-        packed = struct.pack(variables.layout([number], variables.parts(8)), *values)
+        packed = struct.pack(variables.layout([number], variables.counts(8)), *values)
         many = len(variables.VARIABLES[number].letter) > 1
-        assert variables.unpack([number], packed, variables.parts(8)) == [tuple(values) if many else values[0]]
+        assert variables.unpack([number], packed, variables.counts(8)) == [tuple(values) if many else values[0]]
 
 
 def test_what_is_told_is_what_the_robot_knows(rig):
@@ -68,7 +68,7 @@ def test_what_is_told_is_what_the_robot_knows(rig):
     record = [body for name, body in rig.run(100) if name == "telemetry"][-1]
 
     asked = numbers("state", "coils_on", "duty_permille", "lease_left_ms", "supply_mv")
-    assert variables.unpack(asked, variables.veiled(record.values), variables.parts(8)) == [
+    assert variables.unpack(asked, variables.veiled(record.values), variables.counts(8)) == [
         messages.ARMED, 0b101, (600, 0, 600, 0, 0, 0, 0, 0), 500, 2000,
     ]  # fmt: skip
 
@@ -228,7 +228,7 @@ def test_the_attitude_is_among_the_variables():
     record = [body for name, body in rig.run(100) if name == "telemetry"][-1]
 
     roll, pitch, down = variables.unpack(
-        numbers("roll_decideg", "pitch_decideg", "down"), variables.veiled(record.values), variables.parts(18)
+        numbers("roll_decideg", "pitch_decideg", "down"), variables.veiled(record.values), variables.counts(18)
     )
     assert (abs(roll) <= 3, abs(pitch) <= 3, down != 255) == (True, True, True)
 
@@ -244,4 +244,4 @@ def test_the_usual_variables_read_at_once_are_those_read_one_by_one():
     for number in variables.USUAL:
         readings.readers[number](values)
 
-    assert readings.usual() == struct.pack(variables.layout(variables.USUAL, variables.parts(18)), *values)
+    assert readings.usual() == struct.pack(variables.layout(variables.USUAL, variables.counts(18)), *values)

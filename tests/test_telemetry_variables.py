@@ -25,19 +25,19 @@ def test_a_record_holds_its_variables_in_the_order_they_were_asked_for():
     asked = numbers("duty_permille", "state", "board_decidegc")
     values = struct.pack("<3HBh", 0, 600, 1000, 3, -125)
 
-    assert variables.size(asked, variables.parts(3)) == len(values) == 9
-    assert variables.unpack(asked, values, variables.parts(3)) == [(0, 600, 1000), 3, -125]
+    assert variables.size(asked, variables.counts(3)) == len(values) == 9
+    assert variables.unpack(asked, values, variables.counts(3)) == [(0, 600, 1000), 3, -125]
 
 
 def test_the_usual_record_of_22_coils_is_102_bytes():
-    assert variables.layout(variables.USUAL, variables.parts(22)) == "<BHHHhhhB22H22h"
-    assert variables.size(variables.USUAL, variables.parts(22)) == 102
+    assert variables.layout(variables.USUAL, variables.counts(22)) == "<BHHHhhhB22H22h"
+    assert variables.size(variables.USUAL, variables.counts(22)) == 102
 
 
 @pytest.mark.parametrize("values", [b"", b"\x01\x02", b"\x01\x02\x03\x04"])
 def test_values_of_another_length_are_refused(values):
     with pytest.raises(ValueError, match="bytes of values, expected 3"):
-        variables.unpack(numbers("state", "step"), values, variables.parts(8))
+        variables.unpack(numbers("state", "step"), values, variables.counts(8))
 
 
 def test_veiled_values_hold_no_zero_where_coils_are_off():

@@ -29,7 +29,7 @@ def test_a_watcher_gets_the_usual_variables_for_two_seconds_while_another_holds_
 
     assert len(records) == pytest.approx(20, abs=1)
     values = variables.unpack(
-        variables.USUAL, variables.veiled(records[0].values), variables.parts(rig.core.channels.count)
+        variables.USUAL, variables.veiled(records[0].values), variables.counts(rig.core.channels.count)
     )
     assert values[variables.USUAL.index(variables.number("state"))] == messages.ARMED
     assert rig.core.session == SESSION
