@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 
+from hil_sim.physics.block.material import BlockError
 from hil_sim.soundness import OutOfModel
 from tests.pressed_plants import drive, driven, plant_of, push_hold_lift
 
@@ -199,3 +200,28 @@ def test_the_same_commands_do_the_same_however_time_is_cut():
             cut.advance(part, np.zeros(0))
 
     assert cut.load_n == pytest.approx(whole.load_n, rel=1e-9)
+
+
+@pytest.mark.parametrize("indenter", ["flat", "bonded"])
+def test_a_punch_is_as_wide_as_it_is_said_to_be_whatever_the_cells(indenter):
+    """Force per modulus and depth grows evenly with the width, though the nodes below it are in steps."""
+    shapes = [plant_of(f"indenter.width_mm:{w}", options=f"indenter={indenter}").shape_m for w in range(16, 27, 2)]
+
+    steps = np.diff(shapes)
+
+    assert steps.min() > 0.5 * steps.mean()
+    assert steps.max() < 1.5 * steps.mean()
+
+
+def test_a_wedge_touches_with_its_corner_wherever_it_stands():
+    forces = [
+        driven(plant_of(f"indenter.at_mm:{at}", options="indenter=polygon"), 1.0, 2.0).load_n
+        for at in (39.0, 40.0, 41.5, 42.0)
+    ]
+
+    assert forces == pytest.approx([forces[1]] * 4, rel=0.05)
+
+
+def test_a_punch_narrower_than_a_cell_is_refused():
+    with pytest.raises(BlockError, match="columns = 16, too few"):
+        plant_of("indenter.width_mm:1", options="indenter=flat")

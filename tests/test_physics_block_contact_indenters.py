@@ -85,3 +85,10 @@ def test_the_gap_is_how_far_each_point_is_below_the_shape():
     gaps = gap(WEDGE, x, y, depth=2e-3, begin=0.040)
 
     assert gaps == pytest.approx([-2e-3, 2e-3, np.inf], abs=1e-15)
+
+
+def test_a_shape_is_lowest_at_its_edges_in_its_middle_or_at_corners():
+    assert Punch(0.02).lowest == (-0.01, 0.01)
+    assert Cylinder(0.02).lowest == (0.0,)
+    assert Polygon(((-1, 1), (0.5, 0), (1, 1))).lowest == (0.5,)
+    assert Polygon(((-1, 1), (-1, 0), (2, 0), (2, 1))).lowest == (-1.0, 2.0)

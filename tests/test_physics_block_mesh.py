@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from hil_sim.physics.block.material import BlockError
@@ -93,3 +93,24 @@ def test_a_mesh_that_does_not_conform_is_refused_by_number(points, triangles, wo
 def test_a_rectangle_that_cannot_be_is_refused(extent, words):
     with pytest.raises(BlockError, match=words):
         rectangle(*extent)
+
+
+@settings(max_examples=50)
+@given(columns=st.integers(4, 64), left=st.floats(0.001, 0.079), right=st.floats(0.001, 0.079))
+def test_lines_of_nodes_stand_where_they_are_wanted(columns, left, right):
+    assume(right - left > 2 * 0.080 / columns)
+    mesh = rectangle(0.080, 0.040, columns, 2, [right, left, -0.01, 0.09])
+
+    x = np.unique(mesh.points[:, 0])
+
+    assert x.size == columns + 1
+    assert all(np.abs(x - line).min() < 1e-15 for line in (0.0, left, right, 0.080))
+
+
+def test_lines_that_are_there_already_move_nothing():
+    assert (rectangle(0.080, 0.040, 64, 2, [0.030, 0.050]).points == rectangle(0.080, 0.040, 64, 2).points).all()
+
+
+def test_lines_nearer_to_each_other_than_a_cell_are_refused():
+    with pytest.raises(BlockError, match="too few to part x"):
+        rectangle(0.080, 0.040, 64, 2, [0.0402, 0.0398])

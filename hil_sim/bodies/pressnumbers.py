@@ -56,9 +56,14 @@ def indenter_of(numbers: PressNumbers) -> Indenter:
 
 
 def mesh_for(numbers: PressNumbers) -> Mesh:
-    """Return the mesh of the block: cells, or what its file holds; MeshFileError or BlockError when that is no mesh."""
+    """Return the mesh of the block: cells, with nodes where the indenter is lowest, or what its file holds.
+
+    MeshFileError or BlockError when that is no mesh.
+    """
     if numbers.mesh is None:
-        return rectangle(numbers.width, numbers.height, numbers.columns, numbers.rows)
+        at = 0.5 * numbers.width if numbers.at is None else numbers.at
+        lines = [at + x for x in indenter_of(numbers).lowest]
+        return rectangle(numbers.width, numbers.height, numbers.columns, numbers.rows, lines)
     points_mm, triangles = read_mesh(numbers.mesh)
     return mesh_of(1e-3 * points_mm, triangles)
 

@@ -43,6 +43,10 @@ class Indenter(Protocol):
     def width(self) -> float:
         """How wide it is [m]."""
 
+    @property
+    def lowest(self) -> tuple[float, ...]:
+        """Where it is lowest, or where it begins and ends to be so, from its axis [m]: a mesh wants nodes there."""
+
     def height(self, x: Array) -> Array:
         """Return how high its underside is above its lowest point at x from its axis, inf where it is not [m]."""
 
@@ -57,6 +61,11 @@ class Punch:
     def __post_init__(self) -> None:
         """Raise IndenterError for a width that is not positive."""
         _check_length("width", self.width)
+
+    @property
+    def lowest(self) -> tuple[float, ...]:
+        """Its edges [m]."""
+        return -0.5 * self.width, 0.5 * self.width
 
     def height(self, x: Array) -> Array:
         """Return 0 within half the width from the axis, edges included [m]."""
@@ -79,6 +88,11 @@ class Cylinder:
     def width(self) -> float:
         """Its diameter [m]."""
         return 2.0 * self.R
+
+    @property
+    def lowest(self) -> tuple[float, ...]:
+        """Its middle [m]."""
+        return (0.0,)
 
     def height(self, x: Array) -> Array:
         """Return the height of the lower half of the circle, free of cancellation near the axis [m]."""
@@ -108,6 +122,13 @@ class Polygon:
     def width(self) -> float:
         """From its leftmost to its rightmost corner [m]."""
         return float(np.ptp([x for x, _ in self.corners]))
+
+    @property
+    def lowest(self) -> tuple[float, ...]:
+        """Its lowest corner or corners [m]."""
+        least = min(y for _, y in self.corners)
+        low = [x for x, y in self.corners if y <= least + EDGE * self.width]
+        return tuple(sorted({min(low), max(low)}))
 
     def height(self, x: Array) -> Array:
         """Return the height of the lower hull, edges included [m]."""

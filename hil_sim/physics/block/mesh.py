@@ -9,6 +9,7 @@ node that no triangle uses or that coincides with another, an edge with more tha
 same side, and a node that hangs on somebody's edge. Pieces that do not touch are accepted: each needs supports.
 """
 
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -47,7 +48,7 @@ class Mesh(NamedTuple):
         return np.flatnonzero(chosen)
 
 
-def rectangle(width: float, height: float, columns: int, rows: int) -> Mesh:
+def rectangle(width: float, height: float, columns: int, rows: int, lines: Iterable[float] = ()) -> Mesh:
     r"""Return a rectangle from (0, 0) on, cut into cells of two triangles each with alternating diagonals.
 
     The diagonals of cells that share a side meet on it: the first cell's, at (0, 0), rises, its neighbours' fall.
@@ -62,6 +63,8 @@ def rectangle(width: float, height: float, columns: int, rows: int) -> Mesh:
         Cells along x [1]
     rows : int
         Cells along y [1]
+    lines : iterable of float, optional
+        Where lines of nodes are to be; the nearest go there, the others divide what is between evenly [m]
 
     Returns
     -------
@@ -71,7 +74,7 @@ def rectangle(width: float, height: float, columns: int, rows: int) -> Mesh:
     Raises
     ------
     BlockError
-        An extent that is not positive [m] or less than one cell
+        An extent that is not positive [m], less than one cell, or lines nearer to each other than a cell
     """
     for name, extent in (("width", width), ("height", height)):
         if not 0.0 < extent < np.inf:
@@ -79,7 +82,7 @@ def rectangle(width: float, height: float, columns: int, rows: int) -> Mesh:
     for name, count in (("columns", columns), ("rows", rows)):
         if count < 1:
             raise BlockError(f"{name} = {count}, at least 1")
-    x, y = np.linspace(0.0, width, columns + 1), np.linspace(0.0, height, rows + 1)
+    x, y = _across(width, columns, sorted(set(lines))), np.linspace(0.0, height, rows + 1)
     points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
     i, j = (each.ravel() for each in np.meshgrid(np.arange(columns), np.arange(rows), indexing="ij"))
     a = i * (rows + 1) + j
@@ -88,6 +91,19 @@ def rectangle(width: float, height: float, columns: int, rows: int) -> Mesh:
     first = np.where(rising, [a, b, c], [a, b, d])
     second = np.where(rising, [a, c, d], [b, c, d])
     return mesh_of(points, np.stack([first, second], axis=-1).reshape(3, -1).T)
+
+
+def _across(width: float, columns: int, lines: list[float]) -> Array:
+    """Return the places (columns + 1,) of the lines of nodes [m], or raise BlockError where those wanted clash."""
+    even = np.linspace(0.0, width, columns + 1)
+    wanted = np.array([line for line in lines if NEAR * width < line < (1.0 - NEAR) * width])
+    number = np.clip(np.rint(wanted / width * columns), 1, columns - 1).astype(np.int64)
+    for wrong in np.flatnonzero(np.diff(number) <= 0)[:1]:
+        raise BlockError(f"columns = {columns}, too few to part x = {wanted[wrong]:g} and {wanted[wrong + 1]:g} m")
+    if np.abs(even[number] - wanted).max(initial=0.0) <= NEAR * width:
+        return even
+    x: Array = np.interp(np.arange(columns + 1), [0, *number, columns], [0.0, *wanted, width])
+    return x
 
 
 def mesh_of(points: Any, triangles: Any) -> Mesh:
