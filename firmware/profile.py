@@ -149,9 +149,9 @@ class ServoLimits:
         return self._low_ns + from_low * self._width_us * 10 // (self._span_centi // 100) + beyond_ns
 
     def position_centi(self, counts: int) -> int:
-        """Return the position at which the potentiometer reads so many counts."""
+        """Return the position at which the potentiometer reads so many counts, to the nearest hundredth."""
         way = self.high_counts - self.low_counts
-        return (counts - self.low_counts) * self._span_centi // way - self._span_centi // 2
+        return ((counts - self.low_counts) * self._span_centi + way // 2) // way - self._span_centi // 2
 
     def _check(self, data: dict) -> None:
         """Raise ValueError where a number on the way would be too large for its place, or a pulse no pulse."""

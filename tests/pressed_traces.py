@@ -63,7 +63,7 @@ def log_of(material, moves=PUSH, noise_n=0.02, seed=0, every=2, shape_m=SHAPE_M)
             "host_ms": 5 * k + 30, "now_ms": 5 * k, "slot": 1,
             "values": {
                 "load_mn": 8 * floor((1000 * force + 1000 * noise_n * noise.standard_normal()) / 8),
-                "joint_centi": {"P": floor(100 * axis)}, "commanded_centi": {"P": target},
+                "joint_centi": {"P": floor(100 * axis + 0.5)}, "commanded_centi": {"P": target},
             },
         }
         for k, ((axis, force), target) in enumerate(zip(pressed(material, told, shape_m), told, strict=True))

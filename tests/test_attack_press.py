@@ -64,6 +64,15 @@ def test_no_number_of_the_press_is_beyond_the_small_integers_of_a_board(reset, t
     assert abs(joints.commanded_centi[0]) <= 18_000
 
 
+def test_a_position_is_told_to_the_nearest_hundredth_of_all_that_its_potentiometer_may_read():
+    limits = ServoLimits(WIDEST)
+    way, half = limits.high_counts - limits.low_counts, limits._span_centi // 2
+
+    for counts in range(4096):
+        told = int(limits.position_centi(Small(counts)))
+        assert abs(told - ((counts - limits.low_counts) * 36_000 / way - half)) <= 0.5
+
+
 @pytest.mark.parametrize("load", [{"full_mn": FORCE_MAX_MN, "trip_mn": 70_000, "most_mn": 70_000}, {}])
 def test_no_reading_of_the_load_cell_is_beyond_them(load):
     limits = LoadLimits(DATA["load"] | load)
