@@ -62,6 +62,35 @@ def test_softer_and_harder_blocks_bear_their_force_too(scale):
     assert felt[-1] == pytest.approx(4 * scale, rel=0.03)
 
 
+@pytest.mark.parametrize(("scale", "off_n"), [(20.0, 0.4), (50.0, 0.8), (100.0, 1.5)])
+def test_the_force_on_far_too_hard_a_block_stops_swinging(scale, off_n):
+    """What is left is what a step of the pulses does: a sixteenth of a hundredth is 3 N at 100 times the dashpot."""
+    rig = PressRig(scale)
+    rig.arm()
+    rig.press(5000, over_ms=1000, time_ms=20_000)
+    rig.run(12_000)
+    felt = []
+    for _ in range(1000):
+        rig.run(5)
+        felt.append(rig.axis.force_n)
+
+    assert 5.0 - off_n < min(felt) < max(felt) < 5.0 + off_n
+
+
+def test_a_press_that_was_slow_on_a_hard_block_is_as_quick_as_ever_on_the_next_one():
+    rig = PressRig(100.0)
+    rig.arm()
+    rig.press(5000, over_ms=1000, time_ms=10_000)
+    rig.run(6000)
+    rig.move(P, -100, over_ms=1000)
+    rig.run(1100)
+    rig.axis._scale = 1.0
+    rig.press(5000, over_ms=500, time_ms=10_000)
+    rig.run(5000)
+
+    assert rig.axis.force_n == pytest.approx(5.0, abs=0.1)
+
+
 def test_a_press_through_the_air_comes_to_its_force_without_a_blow(armed):
     armed.axis.surface_mm = 1.0
     armed.press(5000, over_ms=500, time_ms=20_000)

@@ -49,6 +49,19 @@ def test_a_block_that_is_too_hard_for_the_load_cell_and_never_gives_way_can_be_l
     assert rig.robot.status().state == "armed"
 
 
+def test_a_block_that_answers_like_a_stiff_dashpot_is_pressed_without_swinging():
+    rig = HilRig(f"sim:press?{COARSE}&indenter=flat&set=material.damping_kpa_s:150")
+    rig.robot.subscribe(20)
+    rig.robot.arm()
+    rig.robot.press(5000, 1000, 9000, 1000)
+    rig.run(5.0)
+
+    felt_n = [record.load_n for record in rig.run(3.5) if isinstance(record, Telemetry)]
+
+    assert 3.5 < min(felt_n) < max(felt_n) < 6.5
+    assert rig.bench.observe()["force_peak_n"] < 10
+
+
 def test_a_servo_that_cannot_press_any_harder_trips():
     rig, _ = pressed("set=axis.stall_force_n:4", seconds=3.0)
 
