@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from hil_sim.address import BODIES, Address, AddressError
-from hil_sim.bench import Bench, Parts, Plant
+from hil_sim.bench import Bench, Parts
 from hil_sim.bodies.ring import RingPlant
 from hil_sim.bodies.sphere import SpherePlant
 from hil_sim.bodies.still import still
@@ -20,6 +20,7 @@ from hil_sim.loadcells import cell_input, load_input
 from hil_sim.meshfile import MeshFileError
 from hil_sim.physics.block.material import BlockError
 from hil_sim.physics.hand.fingertip import HandError
+from hil_sim.plant import Plant
 from hil_sim.robots.file import PROFILES, RobotFile, RobotFileError, load
 from hil_sim.robots.keys import COILS, FINGERS, KINDS, PRESS, RING
 from hil_sim.soundness import CameApart

@@ -14,10 +14,9 @@ Several robots live in lock-step on one clock, and on one CAN bus, when each ben
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hil_sim.board import Board
 from hil_sim.clock import Clock
@@ -30,6 +29,7 @@ from hil_sim.devices.servo import DEAD_BAND_US
 from hil_sim.joints import Jointed, Joints
 from hil_sim.journal import Journal
 from hil_sim.loadcells import ForceCells, LoadCell, Loaded, connect
+from hil_sim.plant import Meshed, Plant
 from hil_sim.record import CoilRecord, JointRecord
 from hil_sim.soundness import EVERY_US, Soundness
 from hil_sim.supply import Battery, Supply
@@ -38,40 +38,6 @@ from hil_sim.worlds.image import Image
 from hil_sim.worlds.world import Crash, Interpreter, World
 
 GRID_US = 5_000
-FloatArray = NDArray[np.float64]
-
-
-class Plant(Protocol):
-    """The body: coils and what they move. One with joints is `Jointed`, too."""
-
-    @property
-    def labels(self) -> Sequence[str]:
-        """The coils."""
-
-    @property
-    def resistance(self) -> FloatArray:
-        """Their resistances [ohm]; infinite for an open one."""
-
-    @property
-    def temperature(self) -> FloatArray:
-        """Their temperatures [degC]."""
-
-    def advance(self, duration_us: int, coil_power_w: FloatArray) -> None:
-        """Let time pass with constant power in each coil."""
-
-    def observe(self) -> dict[str, Any]:
-        """Return what a motion capture system would."""
-
-    def snapshot(self) -> dict[str, Any]:
-        """Return the shape, for pictures."""
-
-
-@runtime_checkable
-class Meshed(Protocol):
-    """A body that is a mesh of triangles."""
-
-    def fields(self) -> dict[str, Any]:
-        """Return the mesh, and displacement, strain and stress on it."""
 
 
 @dataclass(frozen=True)
