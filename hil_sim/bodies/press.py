@@ -47,6 +47,7 @@ class PressPlant:
         self.press = press_of(self.numbers)
         self.state = self._in_the_air(0.0)
         self.surface = surface_of(self.press.block.mesh)
+        self.block_mm = pressview.block_mm(self.numbers, self.press.block.mesh)
         self.places = places_of(self.numbers, self.press.block.mesh)
         self.cells = cells_at(self.places, self.numbers.side, self.press.block.mesh)
         self.screw = Screw(self.numbers.screw)

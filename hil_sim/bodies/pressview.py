@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hil_sim.bodies.pressnumbers import PressNumbers
+from hil_sim.physics.block.mesh import Mesh
 from hil_sim.physics.block.stress import von_mises
 
 if TYPE_CHECKING:
@@ -32,8 +33,6 @@ def model(plant: "PressPlant") -> dict[str, Any]:
 def snapshot(plant: "PressPlant") -> dict[str, Any]:
     """Return block, surface, indenter and cells at this moment, mm."""
     mesh, state = plant.press.block.mesh, plant.state
-    low, size = mesh.points.min(axis=0), np.ptp(mesh.points, axis=0)
-    width_mm, height_mm = (1e3 * size).tolist()
     top = mesh.points[plant.surface] + state.block.u[plant.surface]
     return {
         "kind": "press",
@@ -46,16 +45,22 @@ def snapshot(plant: "PressPlant") -> dict[str, Any]:
         "force_n": state.force,
         "current_a": plant.screw.current_a,
         "touching": plant.touching,
-        "block": {
-            "width_mm": width_mm,
-            "height_mm": height_mm,
-            "thickness_mm": 1e3 * plant.numbers.thickness,
-            "corner_mm": (1e3 * low).tolist(),
-        },
+        "block": dict(plant.block_mm),
         "surface_mm": (1e3 * top).tolist(),
         "indenter": {"kind": plant.numbers.kind, "outline_mm": _placed(plant)},
         "cells": _cells(plant),
         "model": model(plant),
+    }
+
+
+def block_mm(numbers: PressNumbers, mesh: Mesh) -> dict[str, Any]:
+    """Return the size of a block before it is pressed, and where its lowest corner on the left is."""
+    width_mm, height_mm = (1e3 * np.ptp(mesh.points, axis=0)).tolist()
+    return {
+        "width_mm": width_mm,
+        "height_mm": height_mm,
+        "thickness_mm": 1e3 * numbers.thickness,
+        "corner_mm": (1e3 * mesh.points.min(axis=0)).tolist(),
     }
 
 
