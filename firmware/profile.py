@@ -18,6 +18,7 @@ EDGE_COUNTS = 8  # at either end of the converter's range: what a load cell read
 FORCE_MAX_MN = 100_000
 PRESSURE_MAX_PA = 32_767  # a condition compares no more
 CELLS_MAX = 14
+INPUTS = 16  # of both converters
 PRESS_GAIN_MAX = 10_000  # um/s for a newton: beyond it the loop's integers would not stay small
 RESET_MAX = 20_000
 SMOOTH_MIN_MS = 20  # no less than a late control step
@@ -76,6 +77,7 @@ class Profile:
         self.press = PressLimits(data["press"]) if "press" in data else None
         self.cells = [row["input"] for row in data.get("cells", ())]
         self.cell_full_pa = data["cell"]["full_pa"] if self.cells else 0
+        self._check_inputs()
         self._check_forces()
         self.supply = Supply(data["supply"], data["supply_mv"])
         self.lease_ms = data["session"]["lease_ms"]
@@ -83,12 +85,23 @@ class Profile:
         self.program_bytes_max = data["program"]["bytes_max"]
         self.imu_address = data["imu"]["address"] if "imu" in data else 0  # of the attitude sensor, 0: has none
 
+    def _check_inputs(self) -> None:
+        """Raise ValueError for an input that no converter has, or that two things are read at."""
+        inputs = self.cells + ([self.load.input] if self.load else [])
+        for joint in self.joints:
+            inputs += [joint.current, joint.position]
+        for number in inputs:
+            if not 0 <= number < INPUTS or inputs.count(number) > 1:
+                raise ValueError(f"input {number}: one of 0 to {INPUTS - 1} for each thing that is read")
+
     def _check_forces(self) -> None:
         """Raise ValueError for cells that cannot be read, or a press that is none."""
         if not self.joints and (self.load or self.cells):
             raise ValueError("load cell and force cells are of a robot with joints")
         if self.press and not (self.load and len(self.joints) == 1 and self.servo.unit == "mm"):
             raise ValueError("a press has a load cell and one joint, in mm")
+        if self.press and not 0 < self.press.touch_mn < self.load.most_mn:
+            raise ValueError("press: touch_mn is more than no force and less than the most that may be asked for")
         if not 0 <= self.cell_full_pa <= PRESSURE_MAX_PA or len(self.cells) > CELLS_MAX:
             raise ValueError(f"at most {CELLS_MAX} cells of {PRESSURE_MAX_PA} Pa")
 

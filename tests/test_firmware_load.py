@@ -169,10 +169,23 @@ BAD = [
     ("press", {"reset_permille_per_s": -1}),
     ("press", {"smooth_ms": 10}),
     ("press", {"approach_um_per_s": 0}),
+    ("press", {"touch_mn": -1}),  # it would approach as if it touched
+    ("press", {"touch_mn": 18_000}),
     ("cell", {"full_pa": 40_000}),
     ("servo", {"unit": "inch"}),
     ("servo", {"unit": "deg"}),  # of a press
 ]
+
+
+@pytest.mark.parametrize(
+    ("load", "position", "cell"), [(16, 1, 7), (-1, 1, 7), (8, 16, 7), (8, 1, 99), (1, 1, 7), (7, 1, 7), (8, 7, 7)]
+)
+def test_a_profile_that_reads_no_input_or_two_things_at_one_is_refused(load, position, cell):
+    data = json.loads(PRESS.read_bytes())
+    data["load"]["input"], data["channels"][0]["position"], data["cells"][5]["input"] = load, position, cell
+
+    with pytest.raises(ValueError, match="input"):
+        Profile(json.dumps(data).encode())
 
 
 @pytest.mark.parametrize(("section", "change"), BAD)
