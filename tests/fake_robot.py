@@ -26,6 +26,11 @@ STEP_MS = 5
 PAGE = 200
 
 
+def telemetry_of(form: int, values: bytes) -> bytes:
+    """Return a record of telemetry as it stands on the line."""
+    return messages.TELEMETRY.pack(slot=0, form=form, count=0, now_ms=70, values=variables.veiled(values))
+
+
 class FakeRobot:
     """Answers every request with ok, runs a program of `program_ms`, and does what its attributes say."""
 
@@ -63,6 +68,15 @@ class FakeRobot:
         self._ends_ms: int | None = None
         self._due_ms = 0
         self._finder = frames.StopFinder()
+
+    @property
+    def last_order(self) -> tuple:
+        """Return the fields of the order that came last."""
+        return self.orders[-1][2]
+
+    def taken(self, *names: str) -> list[tuple]:
+        """Return the orders of these names, each with its fields."""
+        return [(name, *order) for _, name, order in self.orders if name in names]
 
     def step(self, now_ms: int, data: bytes) -> bytes:
         """Take the bytes that arrived, go on to `now_ms`, return the bytes to send."""

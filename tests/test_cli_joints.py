@@ -32,10 +32,6 @@ def hand(monkeypatch):
     return peer
 
 
-def orders(peer, *names):
-    return [(name, *order) for _, name, order in peer.orders if name in names]
-
-
 def interrupt():
     raise KeyboardInterrupt
 
@@ -44,8 +40,8 @@ def test_move_arms_moves_watches_to_the_end_of_the_hold_and_disarms(softrig, pee
     told = softrig("move", "R", "L", "--to", "8deg", "--over", "0.5s", "--hold", "300ms")
 
     assert told.status == 0
-    assert [name for name, *_ in orders(peer, "arm", "move", "disarm")] == ["arm", "move", "disarm"]
-    assert orders(peer, "move") == [("move", 0b11, 800, 500, 300)]
+    assert [name for name, *_ in peer.taken("arm", "move", "disarm")] == ["arm", "move", "disarm"]
+    assert peer.taken("move") == [("move", 0b11, 800, 500, 300)]
     assert told.out.splitlines() == [
         "R reached 8.00 deg, told 8 deg; 1.20 A at most",
         "L reached 8.00 deg, told 8 deg; 1.20 A at most",
@@ -80,7 +76,7 @@ def test_move_tells_the_same_as_json(softrig, line):
 def test_angles_are_read_as_an_operator_writes_them(softrig, peer, line, text, centideg):
     softrig("move", "R", "--to", text, "--over", "50ms", "--hold", "50ms")
 
-    assert orders(peer, "move")[0][2] == centideg
+    assert peer.taken("move")[0][2] == centideg
 
 
 @pytest.mark.parametrize("text", ["", "-", "--8", "8rad", "8 s", "8 %", "deg", "+-8", "- 8 deg deg", "1e1"])
@@ -105,7 +101,7 @@ def test_orient_grips_turns_and_tells_how_the_object_lies(softrig, peer, line):
     told = softrig("orient", "-5deg", "--grip", "8deg", "--for", "1s", "--hold", "0.5s")
 
     assert told.status == 0
-    assert orders(peer, "move", "orient") == [
+    assert peer.taken("move", "orient") == [
         ("move", 0b01, 800, 1000, 2300),
         ("move", 0b10, -800, 1000, 2300),
         ("orient", -500, 1000, 500),
@@ -129,7 +125,7 @@ def test_orient_closes_where_the_object_was_let_go(softrig, peer, line):
     told = softrig("orient", "-5deg", "--grip", "8deg", "--swing", "-6.4deg")
 
     assert told.status == 0
-    assert [order[1:3] for order in orders(peer, "move")] == [(0b01, 160), (0b10, -1440)]
+    assert [order[1:3] for order in peer.taken("move")] == [(0b01, 160), (0b10, -1440)]
 
 
 def test_orient_tells_when_the_swing_is_at_its_limit(softrig, line):
@@ -164,7 +160,7 @@ def test_an_object_that_is_lost_from_sight_is_no_success(softrig, peer, line):
 
     assert told.status == 1
     assert "the robot gave up turning the object: F27 The camera gave no new angle" in told.err
-    assert [name for name, *_ in orders(peer, "disarm")] == ["disarm"]
+    assert [name for name, *_ in peer.taken("disarm")] == ["disarm"]
 
 
 def test_orient_needs_to_know_how_far_to_close(softrig, peer, line):
@@ -200,7 +196,7 @@ def test_what_joints_cannot_do_is_said_in_one_line(softrig, peer, line, argument
 
     assert told.status == 2
     assert told_as in told.err
-    assert not orders(peer, "arm", "fire", "move", "set", "calibrate")
+    assert not peer.taken("arm", "fire", "move", "set", "calibrate")
 
 
 @pytest.mark.parametrize(

@@ -30,10 +30,6 @@ def line(peer, monkeypatch):
     return line
 
 
-def orders(peer, *names):
-    return [(name, *order) for _, name, order in peer.orders if name in names]
-
-
 def interrupt():
     raise KeyboardInterrupt
 
@@ -42,8 +38,8 @@ def test_press_arms_presses_watches_to_the_end_of_the_hold_and_disarms(softrig, 
     told = softrig("press", "5N", "--over", "0.5s", "--for", "2s", "--hold", "300ms")
 
     assert told.status == 0
-    assert [name for name, *_ in orders(peer, "arm", "press", "disarm")] == ["arm", "press", "disarm"]
-    assert orders(peer, "press") == [("press", 5000, 500, 2000, 300)]
+    assert [name for name, *_ in peer.taken("arm", "press", "disarm")] == ["arm", "press", "disarm"]
+    assert peer.taken("press") == [("press", 5000, 500, 2000, 300)]
     assert told.out.splitlines() == [
         "pressing at 5.00 N, told 5 N",
         "force 5.00 N at most",
@@ -96,7 +92,7 @@ def test_an_axis_at_the_end_of_its_range_is_told(softrig, line):
 def test_forces_are_read_as_an_operator_writes_them(softrig, peer, line, text, mn):
     softrig("press", text, "--over", "50ms", "--for", "50ms", "--hold", "50ms")
 
-    assert orders(peer, "press")[0][1] == mn
+    assert peer.taken("press")[0][1] == mn
 
 
 @pytest.mark.parametrize("text", ["", "5n", "5 kg", "5 NN", "N", "5mm", "1e1"])
@@ -122,7 +118,7 @@ def test_a_robot_without_a_press_refuses_before_anything_is_armed(softrig, monke
     told = softrig("press", "5N")
 
     assert (told.status, told.err.startswith("softrig: press refused: R35 ")) == (4, True)
-    assert orders(peer, "arm", "press") == []
+    assert peer.taken("arm", "press") == []
 
 
 def test_more_than_the_robot_allows_is_refused_in_newtons(softrig, peer, line):
@@ -133,7 +129,7 @@ def test_more_than_the_robot_allows_is_refused_in_newtons(softrig, peer, line):
     assert told.status == 4
     assert "press (joint P) refused: R36" in told.err
     assert " 19 N, at most 18. " in told.err
-    assert orders(peer, "disarm")
+    assert peer.taken("disarm")
 
 
 def test_an_overload_ends_a_press_as_a_robot_fault(softrig, peer, line):
@@ -163,7 +159,7 @@ def test_an_axis_moves_by_millimetres(softrig, peer, line):
     told = softrig("move", "P", "--to", "-1.5mm", "--over", "0.5s", "--hold", "300ms")
 
     assert told.status == 0
-    assert orders(peer, "move") == [("move", 1, -150, 500, 300)]
+    assert peer.taken("move") == [("move", 1, -150, 500, 300)]
     assert told.out.splitlines()[0] == "P reached -1.50 mm, told -1.5 mm; 1.20 A at most"
 
 
@@ -179,7 +175,7 @@ def test_a_move_that_presses_tells_what_was_felt(softrig, peer, line):
 def test_a_position_without_a_unit_is_in_that_of_the_joints(softrig, peer, line):
     softrig("move", "P", "--to", "4")
 
-    assert orders(peer, "move")[0][2] == 400
+    assert peer.taken("move")[0][2] == 400
 
 
 @pytest.mark.parametrize(("profile", "to", "unit"), [(PRESS, "4deg", "mm"), (FINGERS, "4mm", "deg")])
@@ -190,7 +186,7 @@ def test_a_position_in_another_unit_is_refused_before_anything_is_armed(softrig,
     told = softrig("move", peer.parts.joints[0], "--to", to)
 
     assert (told.status, told.err) == (2, f"softrig: {to}: the joints of this robot count in {unit}\n")
-    assert orders(peer, "arm", "move") == []
+    assert peer.taken("arm", "move") == []
 
 
 def test_status_shows_depth_force_and_cells(softrig, peer, line):

@@ -17,7 +17,7 @@ from host.robot import Robot
 from host.run import run
 from host.selections import Selection, Selections
 from protocol import codes, messages, program, variables
-from tests.fake_robot import FakeLine, FakeRobot
+from tests.fake_robot import FakeLine, FakeRobot, telemetry_of
 from tests.joint_samples import FINGERS, HAND
 
 FINGER, BOTH = read_profile(FINGERS), read_profile(HAND)
@@ -36,14 +36,6 @@ def robot(peer):
     robot = Robot(FakeLine(peer))
     robot.connect()
     return robot
-
-
-def last_order(peer):
-    return peer.orders[-1][2]
-
-
-def record(form: int, values: bytes) -> bytes:
-    return messages.TELEMETRY.pack(slot=0, form=form, count=0, now_ms=70, values=variables.veiled(values))
 
 
 def test_a_robot_of_joints_alone_has_no_coils():
@@ -107,7 +99,7 @@ def test_a_channel_of_an_unknown_kind_is_a_mismatch():
 def test_telemetry_tells_of_joints_and_of_the_object_in_degrees():
     values = struct.pack("<BHHHhhhB2h2h2Hh", 2, 7, 6000, 350, 231, 0, 0, 255, 812, -795, 800, LIMP, 300, 12, -259)
 
-    told = Selections().take(record(0, values), FINGER.parts, host_ms=80)
+    told = Selections().take(telemetry_of(0, values), FINGER.parts, host_ms=80)
 
     assert (told.joint_position, told.commanded_position) == ((8.12, -7.95), (8.0, None))
     assert (told.joint_ma, told.object_deg) == ((300, 12), -2.59)
@@ -117,7 +109,7 @@ def test_telemetry_tells_of_joints_and_of_the_object_in_degrees():
 def test_an_object_that_the_camera_does_not_see_has_no_angle():
     values = struct.pack("<BHHHhhhB2h2h2Hh", 2, 7, 6000, 350, 231, 0, 0, 255, 0, 0, LIMP, LIMP, 0, 0, LIMP)
 
-    assert Selections().take(record(0, values), FINGER.parts, host_ms=80).object_deg is None
+    assert Selections().take(telemetry_of(0, values), FINGER.parts, host_ms=80).object_deg is None
 
 
 def test_a_sample_has_joints_by_label_and_no_object_without_a_camera():
@@ -125,7 +117,7 @@ def test_a_sample_has_joints_by_label_and_no_object_without_a_camera():
     parts, selections = Parts(("A", "R"), ("A",), ("R",), cameras=0), Selections()
     selections.ask(7, Selection(0, numbers, 10, False))
 
-    told = selections.take(record(8, struct.pack("<Hh", 300, 251)), parts, host_ms=80)
+    told = selections.take(telemetry_of(8, struct.pack("<Hh", 300, 251)), parts, host_ms=80)
 
     named = {"joint_ma": {"R": 300}, "object_centideg": None, "coil_decidegc": {"A": 251}}
     assert told == Sample(80, 70, 0, named)
@@ -162,13 +154,13 @@ def test_a_robot_without_a_camera_has_no_object_in_its_rows():
 def test_joints_are_moved_by_label_and_group(robot, peer):
     robot.move(["all"], -800, over_ms=1000, hold_ms=2000)
 
-    assert last_order(peer) == (0b11, -800, 1000, 2000)
+    assert peer.last_order == (0b11, -800, 1000, 2000)
 
 
 def test_an_object_is_turned_to_an_angle(robot, peer):
     robot.orient(500, time_ms=3000, hold_ms=2000)
 
-    assert last_order(peer) == (500, 3000, 2000)
+    assert peer.last_order == (500, 3000, 2000)
 
 
 @pytest.mark.parametrize(("centideg", "limit"), [(32_768, 3000), (-40_000, -3000)])

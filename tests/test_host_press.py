@@ -16,7 +16,7 @@ from host.robot import Robot
 from host.run import run
 from host.selections import Selection, Selections
 from protocol import codes, messages, program, variables
-from tests.fake_robot import FakeLine, FakeRobot
+from tests.fake_robot import FakeLine, FakeRobot, telemetry_of
 from tests.joint_samples import FINGERS
 from tests.press_profiles import MADE, PRESS, weighed, without
 
@@ -39,14 +39,6 @@ def robot(peer):
     robot = Robot(FakeLine(peer))
     robot.connect()
     return robot
-
-
-def last_order(peer):
-    return peer.orders[-1][2]
-
-
-def record(form: int, values: bytes) -> bytes:
-    return messages.TELEMETRY.pack(slot=0, form=form, count=0, now_ms=70, values=variables.veiled(values))
 
 
 def test_a_press_counts_in_millimetres_and_names_what_it_feels_with():
@@ -99,7 +91,7 @@ def test_telemetry_tells_of_the_axis_in_millimetres_and_of_what_is_felt_in_newto
     cells = (1200, 0, 0, 0, 0, 20_000)
     values = struct.pack("<BHHHhhhBhhHi6H", 2, 7, 6000, 350, 231, 0, 0, 255, 321, LIMP, 300, -8, *cells)
 
-    told = Selections().take(record(0, values), AXIS.parts, host_ms=80)
+    told = Selections().take(telemetry_of(0, values), AXIS.parts, host_ms=80)
 
     assert (told.joint_position, told.commanded_position, told.joint_ma) == ((3.21,), (None,), (300,))
     assert (told.load_n, told.cell_kpa) == (-0.008, (1.2, 0, 0, 0, 0, 20))
@@ -111,7 +103,7 @@ def test_a_sample_has_force_cells_by_label_and_one_load():
     selections = Selections()
     selections.ask(7, Selection(0, numbers, 10, False))
 
-    told = selections.take(record(8, struct.pack("<i6H", 5000, *range(6))), AXIS.parts, host_ms=80)
+    told = selections.take(telemetry_of(8, struct.pack("<i6H", 5000, *range(6))), AXIS.parts, host_ms=80)
 
     cells = {"C1": 0, "C2": 1, "C3": 2, "C4": 3, "C5": 4, "C6": 5}
     assert told == Sample(80, 70, 0, {"load_mn": 5000, "cell_pa": cells, "object_centideg": None})
@@ -122,7 +114,7 @@ def test_a_sample_of_a_robot_without_load_cell_has_no_load():
     selections = Selections()
     selections.ask(7, Selection(0, numbers, 10, False))
 
-    told = selections.take(record(8, struct.pack("<H", 3)), read_profile(FINGERS).parts, host_ms=80)
+    told = selections.take(telemetry_of(8, struct.pack("<H", 3)), read_profile(FINGERS).parts, host_ms=80)
 
     assert told.values == {"load_mn": None, "cell_pa": {}, "step": 3}
 
@@ -155,13 +147,13 @@ def test_a_log_gives_axis_load_and_cells_back_and_exports_them_by_label(tmp_path
 def test_a_press_is_told_force_and_times(robot, peer):
     robot.press(5000, over_ms=1000, time_ms=100_000, hold_ms=600_000)
 
-    assert last_order(peer) == (5000, 1000, 100_000, 600_000)
+    assert peer.last_order == (5000, 1000, 100_000, 600_000)
 
 
 def test_an_axis_is_held_for_minutes(robot, peer):
     robot.move(["P"], -500, over_ms=1000, hold_ms=600_000)
 
-    assert last_order(peer) == (1, -500, 1000, 600_000)
+    assert peer.last_order == (1, -500, 1000, 600_000)
 
 
 def test_forces_and_times_that_no_message_carries_are_refused(robot):
