@@ -11,7 +11,7 @@ import pytest
 
 from hil_sim.physics.block.material import BlockError
 from hil_sim.soundness import OutOfModel
-from tests.pressed_plants import drive, driven, plant_of, push_hold_lift
+from tests.pressed_plants import STIFF_SERVO, drive, driven, plant_of, push_hold_lift
 
 E, C1, C2 = 60e3, 300e3, 6e3
 
@@ -225,3 +225,10 @@ def test_a_wedge_touches_with_its_corner_wherever_it_stands():
 def test_a_punch_narrower_than_a_cell_is_refused():
     with pytest.raises(BlockError, match="columns = 16, too few"):
         plant_of("indenter.width_mm:1", options="indenter=flat")
+
+
+def test_a_block_of_half_the_thickness_presses_back_with_half_the_force():
+    whole, half = (driven(plant_of(f"block.thickness_mm:{mm}", *STIFF_SERVO), 1.0, 1.0) for mm in (40, 20))
+
+    assert half.load_n == pytest.approx(0.5 * whole.load_n, rel=1e-9)
+    assert half.cell_pa == pytest.approx(whole.cell_pa, rel=1e-6)
