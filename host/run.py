@@ -38,15 +38,25 @@ class Progress(Protocol):
 
 
 class Keeper:
-    """Keeps what passes during a run: in a Recording, and in a log if there is one; with `scenes` also what is seen."""
+    """Keeps what passes during a run: in a Recording, and in a log if there is one; with `scenes` also what is seen.
+
+    A long run shows much: unless it is to be `drawn`, that goes to the log alone.
+    """
 
     def __init__(
-        self, log: LogWriter | None = None, observer: Any = None, scenes: bool = True, slice_ms: int = EVERY_MS
+        self,
+        log: LogWriter | None = None,
+        observer: Any = None,
+        scenes: bool = True,
+        slice_ms: int = EVERY_MS,
+        drawn: bool = True,
     ) -> None:
         self.recording = Recording(())
         self._log = log
         self._observer = observer
         self._scenes = scenes
+        self._drawn = drawn
+        self._seen: Scene | None = None  # last
         self._attention = Attention()
         self._slicing = Slicing(observer if scenes else None, self._keep_slice, slice_ms)
         if scenes and hasattr(observer, "watch"):
@@ -95,20 +105,22 @@ class Keeper:
 
     def _keep(self, snapshot: Scene, host_ms: int) -> None:
         """Keep what the observer sees, unless no time has passed for the body since it was last seen."""
-        scenes = self.recording.scenes
-        if scenes and scenes[-1]["t_s"] == snapshot["t_s"]:
+        if self._seen is not None and self._seen["t_s"] == snapshot["t_s"]:
             return
         self._attention.keep(snapshot)
-        scenes.append({**snapshot, "observed": self._observer.observe(), "host_ms": host_ms})
+        self._seen = {**snapshot, "observed": self._observer.observe(), "host_ms": host_ms}
+        if self._drawn:
+            self.recording.scenes.append(self._seen)
         if self._log:
-            self._log.scene(scenes[-1])
+            self._log.scene(self._seen)
 
     def _keep_slice(self, mesh: Mesh, taken: Slice) -> None:
         """Keep what the observer sees inside the body."""
         if self._log and self.recording.mesh is None:
             self._log.mesh(mesh, taken.host_ms)
         self.recording.mesh = mesh
-        self.recording.slices.append(taken)
+        if self._drawn:
+            self.recording.slices.append(taken)
         if self._log:
             self._log.slice(taken)
 

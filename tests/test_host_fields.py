@@ -52,9 +52,9 @@ def event(name, host_ms):
     return Event(host_ms, host_ms, name, 0, 0, None, 0)
 
 
-def kept(watcher, log=None, until_ms=1000, begins_ms=120):
+def kept(watcher, log=None, until_ms=1000, begins_ms=120, drawn=True):
     """Return the recording of a program that began at `begins_ms`, with telemetry each 50 ms and a look each 5 ms."""
-    keeper = Keeper(log, watcher)
+    keeper = Keeper(log, watcher, drawn=drawn)
     for host_ms in range(0, until_ms + 1, 5):
         watcher.t_s = host_ms / 1000
         if host_ms == begins_ms:
@@ -105,6 +105,17 @@ def test_who_keeps_no_scenes_keeps_no_slices():
     keeper.record(event("finished", 900))
 
     assert watcher.asked == 0
+
+
+def test_what_no_picture_needs_is_in_the_log_and_not_in_memory(tmp_path):
+    with LogWriter(tmp_path / "whole.mcap") as log:
+        whole = kept(Watcher(), log)
+    with LogWriter(tmp_path / "lean.mcap") as log:
+        lean = kept(Watcher(), log, drawn=False)
+
+    assert (lean.scenes, lean.slices) == ([], [])
+    assert lean.telemetry == whole.telemetry
+    assert read_log(tmp_path / "lean.mcap").rows == read_log(tmp_path / "whole.mcap").rows
 
 
 def test_time_that_does_not_pass_for_the_body_gives_one_slice():

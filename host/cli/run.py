@@ -56,7 +56,7 @@ def command(
         check_pictures(plot_path)
     with LogWriter(log_path) if log_path else nullcontext() as log:
         link = open_link(address)
-        keeper = Keeper(log, link.observer, scenes=bool(log_path or plot_path))
+        keeper = Keeper(log, link.observer, scenes=bool(log_path or plot_path), drawn=plot_path is not None)
         with Robot(link, keeper, key) as face:
             face.connect()
             keeper.know(face.profile.parts)
