@@ -7,7 +7,7 @@ cell that reads the lower end is torn off.
 
 from array import array
 
-from firmware.profile import EDGE_COUNTS
+from firmware.jointlimits import EDGE_COUNTS
 from protocol import codes
 
 OVER_READS = 3  # in a row that a force must be too great before it is believed

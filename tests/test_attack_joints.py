@@ -5,8 +5,9 @@ from itertools import pairwise
 
 import pytest
 
+from firmware.jointlimits import ServoLimits
 from firmware.joints import Joints
-from firmware.profile import Profile, ServoLimits
+from firmware.profile import Profile
 from protocol import codes, messages, program, variables
 from tests.firmware_bench import FINGERS, Rig, refusal, run_program
 from tests.hil_rig import HilRig

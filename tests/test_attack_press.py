@@ -5,9 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from firmware.joints import Joints
-from firmware.press import Press
-from firmware.profile import (
+from firmware.jointlimits import (
     FORCE_MAX_MN,
     PRESS_GAIN_MAX,
     RESET_MAX,
@@ -16,6 +14,8 @@ from firmware.profile import (
     LoadLimits,
     ServoLimits,
 )
+from firmware.joints import Joints
+from firmware.press import Press
 from tests.firmware_press import PRESS
 from tests.small_integers import Small
 

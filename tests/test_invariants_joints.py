@@ -81,7 +81,7 @@ LOSSES = [
         "no order allows",
     ),
     ("joints.py", "if passed_ms < over_ms:", "if False:", swung, "told to move by 1[45].* deg"),
-    ("profile.py", "from_low = centi + self", "from_low = 20 * centi + self", opened, "its range is -30 to 30"),
+    ("jointlimits.py", "from_low = centi + self", "from_low = 20 * centi + self", opened, "its range is -30 to 30"),
     ("player.py", "self._limbs.play_move(mask,", "self._limbs.play_move(3,", played, "joint L .* no order allows"),
 ]
 
