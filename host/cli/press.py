@@ -17,7 +17,7 @@ from host.errors import BadRequest, Refused
 from host.records import Telemetry
 from protocol import codes
 
-NEAR = 0.05  # mm or deg of the end of the range: the dead band of a servo
+NEAR_MM = 0.05  # the end of the range: the dead band of a servo
 
 
 @click.command("press")
@@ -37,7 +37,9 @@ def command(force: int, robot: str, over: int, lasting: int, hold: int, as_json:
     it, so lift it with `softrig move`.
     """
     if over > lasting:
-        raise BadRequest(f"--over {over} ms is within --for, and that is {lasting} ms: write at least as much")
+        raise BadRequest(
+            f"--for {lasting} ms is less than --over {over} ms, the way to the force, which it includes: give it at least that"
+        )
     with connected(robot) as face:
         profile = face.profile
         if profile.press is None:
@@ -79,7 +81,7 @@ def _lines(fields: dict[str, Any], unit: str, touch_n: float) -> Iterator[str]:
     yield from felt_lines(fields)
     yield from lines(fields["joints"], unit)
     for label, joint in fields["joints"].items():
-        if (joint[f"reached_{unit}"] or 0) > most - NEAR:
+        if (joint[f"reached_{unit}"] or 0) > most - NEAR_MM:
             yield f"{label} is at the end of its range, {most:g} {unit}: it presses no harder"
         if reached is not None and reached <= touch_n:
             yield f"{label} touches nothing: bring it closer with `softrig move {label}`, or regulate for longer"
