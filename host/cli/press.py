@@ -37,9 +37,7 @@ def command(force: int, robot: str, over: int, lasting: int, hold: int, as_json:
     it, so lift it with `softrig move`.
     """
     if over > lasting:
-        raise BadRequest(
-            f"--for {lasting} ms is less than --over {over} ms, the way to the force, which it includes: give it at least that"
-        )
+        raise BadRequest(f"--for {lasting} ms is less than --over {over} ms, which it includes: give it at least that")
     with connected(robot) as face:
         profile = face.profile
         if profile.press is None:
