@@ -40,6 +40,7 @@ $(READY): pyproject.toml
 	@$(BIN)/softrig info --robot sim:sphere-b >/dev/null
 	@$(BIN)/softrig info --robot sim:fingers-experiment >/dev/null
 	@$(BIN)/softrig info --robot sim:press >/dev/null
+	@mkdir -p out
 	@touch $@
 
 test: $(READY)

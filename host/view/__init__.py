@@ -29,7 +29,7 @@ def check_pictures(path: Path) -> None:
     if path.suffix not in SUFFIXES:
         raise BadRequest(f"{path}: name the picture .svg, .png or .pdf")
     if not path.parent.is_dir():
-        raise BadRequest(f"{path}: there is no folder {path.parent}")
+        raise BadRequest(f"{path}: there is no folder {path.parent}, make it: mkdir -p {path.parent}")
     if find_spec("matplotlib") is None:
         raise BadRequest("pictures need matplotlib: install softrig[plot]")
 
