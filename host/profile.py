@@ -147,7 +147,7 @@ class Profile:
         mask = self.mask(names)
         for label in self.named(mask):
             if label in self.joint_labels:
-                raise BadRequest(f"{label} is a joint, no coil: `softrig move {label} --to 8{self.unit}` moves it")
+                raise BadRequest(f"{label} is a joint, no coil: `softrig move {label} --to 1{self.unit}` moves it")
         return mask
 
     def joint_mask(self, names: Iterable[str]) -> int:

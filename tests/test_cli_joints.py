@@ -184,7 +184,7 @@ def test_ctrl_c_in_a_move_stops_the_robot_and_names_the_joints(softrig, peer, li
 @pytest.mark.parametrize(
     ("arguments", "told_as"),
     [
-        (("fire", "R", "--duty", "10%", "--hold", "1s"), "R is a joint, no coil: `softrig move R --to 8deg` moves it"),
+        (("fire", "R", "--duty", "10%", "--hold", "1s"), "R is a joint, no coil: `softrig move R --to 1deg` moves it"),
         (("move", "Z", "--to", "8deg"), "no joint Z on fingers: it has R L, groups all"),
         (("arm", "--without", "R"), "R is a joint: only a coil can be left out"),
         (("calibrate",), "fingers has no coils"),

@@ -54,7 +54,7 @@ def test_a_mask_counts_all_channels_whatever_their_kind():
 
 
 def test_who_fires_a_joint_is_told_to_move_it():
-    with pytest.raises(BadRequest, match="R is a joint, no coil: `softrig move R --to 8deg` moves it"):
+    with pytest.raises(BadRequest, match="R is a joint, no coil: `softrig move R --to 1deg` moves it"):
         BOTH.coil_mask(["A", "R"])
 
 

@@ -83,7 +83,7 @@ def test_a_mask_of_force_cells_counts_the_cells_alone():
 
 
 def test_a_joint_named_as_a_coil_is_told_how_to_move_it_in_its_own_unit():
-    with pytest.raises(BadRequest, match="`softrig move P --to 8mm` moves it"):
+    with pytest.raises(BadRequest, match="`softrig move P --to 1mm` moves it"):
         AXIS.coil_mask(["P"])
 
 
