@@ -45,6 +45,15 @@ def test_what_was_planted_on_a_noisy_bench_is_found(tmp_path, planted):
     assert found["notes"] == []
 
 
+def test_a_part_of_the_material_that_was_not_asked_for_is_told(tmp_path):
+    log = pressed(tmp_path / "press.mcap", "indenter=flat&seed=3&set=material.parallel_modulus_kpa:5")
+
+    (note,) = json.loads(cli("fit", "press", log, "--json").output)["notes"][:1]
+
+    assert "kPa beside the dashpots fits better" in note
+    assert json.loads(cli("fit", "press", log, "--json", "--spring").output)["parallel_modulus_kpa"]["low"] > 2.0
+
+
 def test_the_result_is_told_with_errors_and_limits(flat, tmp_path):
     done = cli("fit", "press", flat, "--plot", tmp_path / "fit.svg")
 

@@ -5,7 +5,7 @@ import pytest
 
 from host.errors import BadRequest
 from host.fit.drive import lag_of, lagged
-from host.fit.estimate import MISFIT, estimate
+from host.fit.estimate import MISFIT, estimate, spring_beside
 from host.fit.shape import shape_of
 from host.fit.trace import press_of
 from tests.pressed_traces import LAG_S, PUSH, SHAPE_M, log_of, rheological
@@ -64,6 +64,17 @@ def test_a_force_of_another_law_is_noticed():
 
     assert fitted(rheological(E0=5e3), moves).misfit > MISFIT
     assert fitted(rheological(E0=5e3), moves, spring=True).misfit < 1.2
+
+
+@pytest.mark.parametrize(("E0", "told"), [(0.0, False), (10e3, True)])
+def test_a_spring_that_the_residual_hides_in_a_short_hold_is_told_all_the_same(E0, told):
+    log = log_of(rheological(E0=E0), seed=2)
+
+    beside = spring_beside(press_of(log), SHAPE_M)
+
+    assert estimate(press_of(log), SHAPE_M).misfit < MISFIT
+    assert (beside is not None) == told
+    assert beside is None or beside.low < E0 < beside.high
 
 
 def test_an_axis_follows_a_ramp_a_lag_behind():

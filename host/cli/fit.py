@@ -15,7 +15,7 @@ from host.logbook import read_log
 from host.view import check_pictures
 
 if TYPE_CHECKING:
-    from host.fit.estimate import Found
+    from host.fit.estimate import Found, Value
     from host.fit.trace import Press
 
 NAMES = {  # of the robot file's keys, and their units over SI
@@ -46,7 +46,7 @@ def press(file: Path, shape: str | None, spring: bool, plot_path: Path | None, a
     check_scipy()
     if plot_path:
         check_pictures(plot_path)
-    from host.fit.estimate import estimate  # noqa: PLC0415  (scipy)
+    from host.fit.estimate import estimate, spring_beside  # noqa: PLC0415  (scipy)
     from host.fit.shape import shape_of  # noqa: PLC0415
     from host.fit.trace import press_of  # noqa: PLC0415
 
@@ -54,7 +54,8 @@ def press(file: Path, shape: str | None, spring: bool, plot_path: Path | None, a
     pressed = press_of(log)
     shape_m = shape_of(log) if shape is None else length_m(shape)
     found = estimate(pressed, shape_m, spring)
-    fields = _fields(file, pressed, shape_m, found)
+    beside = None if spring else spring_beside(pressed, shape_m)
+    fields = _fields(file, pressed, shape_m, found, beside)
     emit(as_json, fields, _lines(fields, found))
     if plot_path:
         from host.fit.plot import draw_fit  # noqa: PLC0415  (matplotlib)
@@ -64,7 +65,7 @@ def press(file: Path, shape: str | None, spring: bool, plot_path: Path | None, a
         note(f"picture: {plot_path}")
 
 
-def _fields(file: Path, press: Press, shape_m: float, found: Found) -> dict[str, Any]:
+def _fields(file: Path, press: Press, shape_m: float, found: Found, beside: Value | None) -> dict[str, Any]:
     """Return the result by name."""
     material = {
         NAMES[name][0]: {part: number * NAMES[name][3] for part, number in value._asdict().items()}
@@ -84,7 +85,7 @@ def _fields(file: Path, press: Press, shape_m: float, found: Found) -> dict[str,
         "noise_n": found.noise_n,
         "touch_mm": found.touch_mm,
         "zero_n": found.zero_n,
-        "notes": list(_notes(press, found)),
+        "notes": list(_notes(press, found, beside)),
     }
 
 
@@ -105,13 +106,16 @@ def _lines(fields: dict[str, Any], found: Found) -> Iterator[str]:
         yield f"  note: {text}"
 
 
-def _notes(press: Press, found: Found) -> Iterator[str]:
+def _notes(press: Press, found: Found, beside: Value | None) -> Iterator[str]:
     """Yield what makes the numbers less worth than they look."""
     from host.fit.estimate import MISFIT  # noqa: PLC0415
 
     tau, c2 = found.values["tau"], found.values["c2"]
     if found.misfit > MISFIT:
         yield "the force does not follow this law, so the errors are too small: try --spring, or another material"
+    elif beside:
+        spring = f"a spring of {1e-3 * beside.value:.3g} kPa beside the dashpots fits better"
+        yield f"{spring} (95 %: {1e-3 * beside.low:.3g} to {1e-3 * beside.high:.3g}): try --spring, or another material"
     if press.hold_s < 0.5 * tau.value:
         yield f"the hold is short beside the relaxation of {tau.value:.3g} s: hold for longer"
     if c2.low <= 0.0:

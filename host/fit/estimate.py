@@ -76,6 +76,15 @@ def estimate(press: Press, shape_m: float, spring: bool = False) -> Found:
     return _told(press, problem, solved, lag)
 
 
+def spring_beside(press: Press, shape_m: float) -> Value | None:
+    """Return the modulus [Pa] of a spring beside the dashpots if the force tells one that is there, None if not."""
+    try:
+        found = estimate(press, shape_m, spring=True).values["E0"]
+    except BadRequest:
+        return None
+    return found if found.low > 0.0 else None
+
+
 class _Problem:
     """The force of a press as a function of what is fitted, scaled to kPa, mm and N."""
 
