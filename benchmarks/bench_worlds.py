@@ -13,8 +13,9 @@ from pathlib import Path
 from hil_sim.link import open_link
 from host.gait.compiler import compile_script
 from host.gait.script import load
+from host.keeper import Keeper
 from host.robot import Robot
-from host.run import Keeper, run
+from host.run import run
 
 ROOT = Path(__file__).parent.parent
 ROBOTS = ("circular", "sphere-a", "sphere-b")

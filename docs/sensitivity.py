@@ -20,8 +20,9 @@ from hil_sim.robots.file import load as load_robot
 from host.errors import SoftrigError
 from host.gait.compiler import compile_script
 from host.gait.script import load as load_script
+from host.keeper import Keeper
 from host.robot import Robot
-from host.run import Keeper, run
+from host.run import run
 
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT / "docs" / "sensitivity.md"

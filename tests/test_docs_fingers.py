@@ -11,10 +11,11 @@ import pytest
 from host.cli import main as softrig
 from host.gait.compiler import compile_script
 from host.gait.script import load
+from host.keeper import Keeper
 from host.link import open_link
 from host.recording import Recording
 from host.robot import Robot
-from host.run import Keeper, run
+from host.run import run
 from host.view.energy import energies_mj
 from host.view.swings import joints_deg, object_deg, of_fingers, phases, swing_deg
 

@@ -17,10 +17,11 @@ from hil_sim.physics.block.stress import Cells
 from host.cli import main as softrig
 from host.gait.compiler import compile_script
 from host.gait.script import load
+from host.keeper import Keeper
 from host.link import open_link
 from host.recording import Recording
 from host.robot import Robot
-from host.run import Keeper, run
+from host.run import run
 from host.view.instants import Numbers
 from host.view.pressing import of_scenes, press_of
 from tests.block_samples import THREE

@@ -15,8 +15,8 @@ import pytest
 from hil_sim.link import open_link
 from host.gait.compiler import compile_script
 from host.gait.script import load
+from host.keeper import Keeper
 from host.robot import Robot
-from host.run import Keeper
 from host.run import run as run_program
 
 HOLD, CREEP, CYCLE = (f"gaits/press-{name}.gait" for name in ("hold-release", "creep", "cycle"))

@@ -8,10 +8,10 @@ import pytest
 from mcap.reader import make_reader
 
 from host.fields import Mesh, mesh_from, mesh_of, mesh_row, slice_from, slice_of, slice_row, strain, von_mises
+from host.keeper import Keeper
 from host.log import LogWriter
 from host.logbook import read_log
 from host.records import Event
-from host.run import Keeper
 from host.slicing import EVERY_MS, MOST, Rhythm, Slicing
 from host.topics import TOPICS
 from tests.pressed_block import PressedBlock, recorded_press

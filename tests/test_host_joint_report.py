@@ -3,11 +3,11 @@
 import pytest
 
 from host.drivenreport import driven, driven_lines
+from host.keeper import Keeper
 from host.observed import observed, observed_lines
 from host.profile import read_profile
 from host.recording import Recording
 from host.records import Event, Telemetry
-from host.run import Keeper
 from tests.joint_samples import FINGERS, HAND
 
 FINGER = read_profile(FINGERS)

@@ -6,12 +6,12 @@ from types import SimpleNamespace
 import pytest
 
 from host.drivenreport import driven, driven_lines
+from host.keeper import Keeper
 from host.observed import observed, observed_lines
 from host.profile import read_profile
 from host.recording import Recording
 from host.records import Event, Telemetry
 from host.report import Facts, Took, lines, report
-from host.run import Keeper
 from protocol import codes, program
 from tests.press_profiles import PRESS, without
 

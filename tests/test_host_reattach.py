@@ -5,10 +5,11 @@ from math import ceil
 import pytest
 
 from host.errors import LinkLost, PortAbsent
+from host.keeper import Keeper
 from host.log import LogWriter
 from host.logbook import read_log
 from host.robot import Robot
-from host.run import IfLost, Keeper, run
+from host.run import IfLost, run
 from protocol import codes, messages
 from tests.fake_robot import PROFILE, FakeLine, FakeRobot
 

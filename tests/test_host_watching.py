@@ -5,10 +5,11 @@ from itertools import pairwise
 from hil_sim.faults.happening import schedule
 from host.gait.compiler import compile_script
 from host.gait.script import loads
+from host.keeper import Keeper
 from host.link import open_link
 from host.records import Telemetry
 from host.robot import Robot
-from host.run import Keeper, run
+from host.run import run
 from tests.rolling_sphere import APEX_S, SNAP_S, JumpingSphere, RollingSphere
 
 SCRIPT = "gait 1\nrobot circular\nfire A at 60 % for 300 ms\n"

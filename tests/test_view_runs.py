@@ -10,10 +10,11 @@ import pytest
 from host.cli import main as softrig
 from host.gait.compiler import compile_script
 from host.gait.script import load
+from host.keeper import Keeper
 from host.link import open_link
 from host.recording import Recording
 from host.robot import Robot
-from host.run import Keeper, run
+from host.run import run
 from host.view import draw_run
 from host.view.body import on_paper, spring
 from host.view.instants import NEAR, apart, fastest, nearby, path_mm, resting

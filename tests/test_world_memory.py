@@ -16,8 +16,9 @@ from hil_sim.worlds import micropython
 from hil_sim.worlds.image import Image
 from host.gait.compiler import compile_script
 from host.gait.script import loads
+from host.keeper import Keeper
 from host.robot import Robot
-from host.run import Keeper, run
+from host.run import run
 from protocol import messages
 from tests.hil_rig import HilRig
 

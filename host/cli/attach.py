@@ -12,12 +12,13 @@ from host.cli.options import given_key, if_lost_options, json_option, robot_opti
 from host.cli.output import emit, note
 from host.drivenreport import driven
 from host.errors import BadRequest
+from host.keeper import Keeper
 from host.linereport import interruption, line_lines
 from host.link import open_link
 from host.log import LogWriter
 from host.records import as_json as fields_of
 from host.robot import Robot
-from host.run import TELEMETRY_MS, Ending, IfLost, Keeper, watch
+from host.run import TELEMETRY_MS, Ending, IfLost, watch
 
 Fields = dict[str, Any]
 

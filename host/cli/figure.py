@@ -14,10 +14,11 @@ from host.cli.output import note, writing
 from host.cli.scripts import place, proven
 from host.errors import BadRequest
 from host.gait.script import load
+from host.keeper import Keeper
 from host.link import open_link
 from host.recording import Recording
 from host.robot import Robot
-from host.run import TELEMETRY_MS, Keeper, run
+from host.run import TELEMETRY_MS, run
 from host.view import (
     check_pictures,
     draw_dents,

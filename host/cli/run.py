@@ -14,11 +14,12 @@ from host.cli.progress import shown
 from host.cli.scripts import place, proven
 from host.gait.compiler import Compiled
 from host.gait.script import load
+from host.keeper import Keeper
 from host.link import open_link, wall_s
 from host.log import LogWriter
 from host.report import Facts, Took, lines, report
 from host.robot import Robot
-from host.run import Ending, IfLost, Keeper, Progress, outliving, run, upload
+from host.run import Ending, IfLost, Progress, outliving, run, upload
 from host.view import check_pictures, draw_run
 
 
