@@ -84,7 +84,7 @@ def test_a_name_that_is_no_picture_is_refused(tmp_path):
 
 
 def test_a_missing_folder_is_refused(tmp_path):
-    with pytest.raises(BadRequest, match="there is no folder .*: mkdir -p "):
+    with pytest.raises(BadRequest, match=r"there is no folder .*: mkdir -p "):
         check_pictures(tmp_path / "nowhere" / "run.svg")
 
 
