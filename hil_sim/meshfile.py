@@ -57,7 +57,7 @@ def _named(path: Path) -> Iterator[None]:
 def _read(path: Path) -> tuple[Array, list[Any]]:
     """Return points (N, 2 or 3) and blocks of cells as they stand in the file."""
     try:
-        import meshio  # type: ignore[import-untyped,unused-ignore]  # noqa: PLC0415  (an extra)
+        import meshio  # noqa: PLC0415  (an extra)
     except ImportError as error:
         raise MeshFileError("a mesh file needs meshio: pip install 'softrig[mesh]'") from error
     if not path.is_file():

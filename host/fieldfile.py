@@ -86,7 +86,7 @@ def _seen(recording: Recording) -> tuple[Mesh, list[Slice]]:
 
 def _write(mesh: Mesh, taken: Slice, fields: Sequence[Field], path: Path) -> None:
     try:
-        import meshio  # type: ignore[import-untyped,unused-ignore]  # noqa: PLC0415  (an extra)
+        import meshio  # noqa: PLC0415  (an extra)
     except ImportError as error:
         raise BadRequest("fields are written with meshio: pip install 'softrig[mesh]'") from error
     nodes: Arrays = {}
