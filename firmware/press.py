@@ -2,9 +2,9 @@
 
 The wanted force follows a straight line to its target and stays there. With the error e the axis goes at the speed
 gain (e + reset x integral of e), smoothed: what is pressed answers a jerk like a dashpot, at once. The integral is
-there because a block that creeps takes a speed to bear a constant force, and counts only while something is touched;
-before, the axis approaches slowly. It keeps to its slew limit and its range; where there is nothing to press on it
-stands at the end of its range.
+there because a block that creeps takes a speed to bear a constant force; it counts only while something is touched,
+and while the axis can follow. Before it touches, the axis approaches slowly. It keeps to its slew limit and its range;
+where there is nothing to press on it stands at the end of its range.
 
 What is harder than the gain is for makes the force swing about what is wanted. Each swing too many halves gain and
 approach, until it does not; they are as in the profile again for an order that begins in the air.
@@ -126,6 +126,7 @@ class Press:
             self._drift_nm_per_s = 0
             return max(-most, min(most, limits.approach_um_per_s >> self._halvings, rate))
         rate = max(-most, min(most, rate))
-        drift = self._drift_nm_per_s + rate * limits.reset_permille_per_s // 1000 * passed_ms
-        self._drift_nm_per_s = max(-most * 1000, min(most * 1000, drift))
-        return max(-most, min(most, rate + self._drift_nm_per_s // 1000))
+        wished = rate + self._drift_nm_per_s // 1000
+        if abs(wished) < most or (wished < 0) != (rate < 0):  # else the axis is late, not the block creeping
+            self._drift_nm_per_s += rate * limits.reset_permille_per_s // 1000 * passed_ms
+        return max(-most, min(most, wished))

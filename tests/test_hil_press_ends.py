@@ -49,6 +49,17 @@ def test_a_block_that_is_too_hard_for_the_load_cell_and_never_gives_way_can_be_l
     assert rig.robot.status().state == "armed"
 
 
+@pytest.mark.parametrize("over_ms", [0, 1000])
+def test_the_most_that_may_be_ordered_trips_nothing_however_quickly_it_is_wanted(over_ms):
+    rig = HilRig(f"sim:press?{COARSE}")
+    rig.robot.arm()
+    rig.robot.press(18_000, over_ms, 2500, 1000)
+    rig.run(3.0)
+
+    assert rig.robot.status().state == "armed"
+    assert 17.5 < rig.bench.observe()["force_peak_n"] < 19.5
+
+
 def test_a_block_that_answers_like_a_stiff_dashpot_is_pressed_without_swinging():
     rig = HilRig(f"sim:press?{COARSE}&indenter=flat&set=material.damping_kpa_s:150")
     rig.robot.subscribe(20)
