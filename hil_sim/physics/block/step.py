@@ -37,7 +37,7 @@ from hil_sim.physics.compiled import Array
 
 SUBSTEPS = 10
 SETTLING = 5.0  # for how many of its fastest times the block's steps are cut after a release
-ROUNDING = 1e-9  # share of the work of the parts of the stress below which their sum is none [1]
+ROUNDING = 1e-9  # share of the work of its parts, and of the forces on all their way, below which work is none [1]
 
 
 class State(NamedTuple):
@@ -148,12 +148,17 @@ def accept(tried: Attempt, du: Array | None = None) -> State:
     move = np.ascontiguousarray(tried.du if du is None else du).reshape(-1, 2)
     strain, q, stress, force = before.strain.copy(), before.q.copy(), np.empty_like(past), np.zeros_like(move)
     carry(block.triangles, tried.stiffness.update, past, move, strain, q, stress, force)
-    unloading = block.material.dual and _unloading(tried, float((force * move).sum()), strain)
     t, u = before.t + tried.dt, before.u + move
+    unloading = block.material.dual and _unloading(tried, force, u, strain)
     return State(t, u, strain, q, stress, force, tried.held.dofs, before.settled, unloading)
 
 
-def _unloading(tried: Attempt, work: float, strain: Array) -> bool:
-    """Return whether the block did work in a step rather than have it done on it [J]; as before if neither."""
-    parts = float(np.abs(tried.past * (strain - tried.state.strain)).sum(axis=0) @ tried.block.triangles.volume)
-    return work < 0.0 if abs(work) > ROUNDING * parts else tried.state.unloading
+def _unloading(tried: Attempt, force: Array, u: Array, strain: Array) -> bool:
+    """Return whether the block did work in a step rather than have it done on it; as before if neither.
+
+    What rounding moves is no work: of what holds still, beside the way it came; of what is free, beside the parts.
+    """
+    before, volume = tried.state, tried.block.triangles.volume
+    work = float((force * (u - before.u)).sum())
+    parts = float(np.abs(tried.past * (strain - before.strain)).sum(axis=0) @ volume)
+    return work < 0.0 if abs(work) > ROUNDING * (parts + float(np.abs(force * u).sum())) else before.unloading
