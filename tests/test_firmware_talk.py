@@ -77,10 +77,10 @@ def test_telemetry_comes_at_its_period_with_every_channel(rig):
     records = [body for name, body in rig.run(1000) if name == "telemetry"]
 
     assert len(records) in (19, 20)
-    duty_permille, coil_decidegc, *of_joints = usual(records[0])[8:]
+    duty_permille, coil_decidegc, *of_others = usual(records[0])[8:]
     assert duty_permille == (500, 0, 0, 0, 0, 0, 0, 0)
     assert len(coil_decidegc) == 8
-    assert of_joints == [()] * 4
+    assert of_others == [()] * 6
 
 
 def test_nothing_is_armed_any_more_once_the_console_was_asked_for(rig):

@@ -16,7 +16,7 @@ def test_robots_lists_the_address_of_each():
 
     rows = {row["address"]: row for row in map(json.loads, result.output.splitlines())}
     kinds = {"circular": "ring", "fingers": "fingers", "fingers-experiment": "fingers"}
-    kinds |= {"sphere-a": "sphere", "sphere-b": "sphere"}
+    kinds |= {"press": "press", "sphere-a": "sphere", "sphere-b": "sphere"}
     assert {address: row["kind"] for address, row in rows.items()} == {f"sim:{name}": kinds[name] for name in kinds}
     assert rows["sim:circular"]["coils"] == list("ABCDEFGH")
     assert (rows["sim:fingers"]["coils"], rows["sim:fingers"]["joints"]) == ([], ["R", "L"])
@@ -29,7 +29,7 @@ def test_robots_fits_a_terminal_and_names_every_coil():
     assert lines[0].startswith("sim:circular            8 coils   Eight BMX100 coils in a rubber ring")
     assert lines[2].startswith("sim:fingers             2 joints  Two one-joint fingers with soft tips")
     assert " B10m1 B01m1 Bm10m1 B0m1m1" in " ".join(lines)
-    assert sum(line.startswith("sim:") for line in lines) == 5
+    assert sum(line.startswith("sim:") for line in lines) == 6
 
 
 @pytest.mark.parametrize(
