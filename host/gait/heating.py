@@ -130,6 +130,7 @@ class Heating:
         label = self._label(channel, op)
         if coil.off_ms > self._clock.now_ms:
             self._replace(coil)
+            self._check_heat(channel)
         on = [each for each in kin if each.end_ms + STEP_MS > self._clock.now_ms]
         left_ms = max((each.rested_ms(self._limits) - self._clock.now_ms for each in kin if each not in on), default=0)
         if left_ms > 0 and (coil not in on or len(kin) > 1):
@@ -207,6 +208,7 @@ class Heating:
         if coil.end_ms > self._clock.now_ms and coil.waits == self._clock.waits:
             had_ms = (coil.begin_ms - self._clock.now_ms) % STEP_MS
         coil.heat_uj += energy_uj(coil.power_uw, had_ms)
+        coil.heat_peak_uj = max(coil.heat_peak_uj, coil.heat_uj)
         coil.on_ms -= left_ms - had_ms
         coil.energy_uj -= energy_uj(coil.power_uw, left_ms - had_ms)
 
