@@ -4,6 +4,8 @@ The heap is locked around every control step of the image that a board would run
 allocation in it raises MemoryError, which ends the firmware.
 """
 
+from functools import partial
+
 import pytest
 
 from hil_sim.address import parse
@@ -140,3 +142,13 @@ def test_the_lock_finds_a_step_that_allocates():
     bad = LOCK.replace(b"    micropython.heap_lock()\n", ALLOCATES.lstrip(b"\n"))
     with pytest.raises(Exception, match="answers"):
         locked(lock=bad)
+
+
+@pytest.mark.parametrize("name", ["sphere-b", "fingers", "press"])
+def test_every_robot_starts_with_memory_to_spare(name):
+    robot = load(name, {})
+    scant = partial(micropython.execute, heap_bytes=micropython.HEAP_BYTES - 48 * 1024)
+    bench = Bench(parts_of(robot), plant_of(robot, 1), Image.installed(robot.profile.read_bytes()), scant)
+    bench.clock.run_until(BOOTED_US)
+
+    assert bench.crashes == []

@@ -19,7 +19,7 @@ from hil_sim.worlds.world import Crashed, Life
 
 VARIABLE = "SOFTRIG_MICROPYTHON"
 SHIM = Path(__file__).with_name("shim")
-HEAP_BYTES = 320 * 1024  # a Pico's has 233 KB, in words of half the width; some 20 KB here are those of the shim
+HEAP_BYTES = 400 * 1024  # a Pico's 233 KB, in words of half the width; some 20 KB here are those of the shim
 SILENCE_S = 60.0  # of real time without an access to the hardware: firmware in an endless loop
 _CHUNK = 65_536
 
