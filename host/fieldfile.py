@@ -21,11 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from host.errors import BadRequest
-from host.fields import Mesh, Slice
+from host.fields import Mesh, Slice, same
 from host.recording import Recording
 
 Arrays = dict[str, NDArray[Any]]
-NEAR_S = 0.2  # beyond the first and last slice
+NEAR_S = 0.2  # beyond the first and last slice, and between two while the body changes
 
 
 class Field(NamedTuple):
@@ -36,11 +36,15 @@ class Field(NamedTuple):
 
 
 class Written(NamedTuple):
-    """What was written: the file to open, the time of the slice or that of the first one, and how many slices."""
+    """What was written: the file to open, the time of the slice or that of the first one, and how many slices.
+
+    `still`: nothing changed in the body between the time that was asked for and that of the slice.
+    """
 
     path: Path
     t_s: float
     slices: int
+    still: bool = False
 
 
 def write_slice(recording: Recording, at_s: float, names: Sequence[str], path: Path) -> Written:
@@ -52,7 +56,8 @@ def write_slice(recording: Recording, at_s: float, names: Sequence[str], path: P
         raise BadRequest(f"there is no slice at {at_s:g} s: the record has {len(slices)}, {span}")
     nearest = int(np.abs(times - at_s).argmin())
     _write(mesh, slices[nearest], fields_of(names), path)
-    return Written(path, float(times[nearest]), 1)
+    still = abs(times[nearest] - at_s) > NEAR_S and _unchanged(slices, times, at_s)
+    return Written(path, float(times[nearest]), 1, bool(still))
 
 
 def write_series(recording: Recording, names: Sequence[str], path: Path) -> Written:
@@ -67,6 +72,12 @@ def write_series(recording: Recording, names: Sequence[str], path: Path) -> Writ
     lines = ['<VTKFile type="Collection" version="0.1">', "<Collection>", *rows, "</Collection>", "</VTKFile>", ""]
     collection.write_text("\n".join(lines), encoding="utf-8")
     return Written(collection, recording.seconds(slices[0].host_ms), len(slices))
+
+
+def _unchanged(slices: list[Slice], times: NDArray[np.float64], at_s: float) -> bool:
+    """Return whether the slices before and after that time are the same."""
+    after = min(int(np.searchsorted(times, at_s)), len(slices) - 1)
+    return same(slices[max(0, after - 1)], slices[after])
 
 
 def fields_of(names: Sequence[str]) -> tuple[Field, ...]:

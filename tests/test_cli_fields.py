@@ -1,6 +1,7 @@
 """`softrig log export --fields`: what was seen inside a block, as files that ParaView opens."""
 
 import sys
+from dataclasses import replace
 from xml.etree import ElementTree
 
 import meshio
@@ -95,7 +96,7 @@ def test_all_slices_are_a_numbered_series_with_their_times(log, recording):
         ((), {}, "fields are exported with --fields NAME,... --at TIME (or all) -o FILE.vtu"),
         (("--at", "2s"), {"output": "press.csv"}, "-o FILE.vtu"),
         (("--at", "2s"), {"output": "absent/press.vtu"}, "cannot write"),
-        (("--at", "soon"), {}, "write a number and s or ms"),
+        (("--at", "soon"), {}, "--at soon: write a time, as 2s, or all"),
     ],
 )
 def test_what_cannot_be_exported_is_told_in_one_line(log, options, more, said):
@@ -118,3 +119,17 @@ def test_where_meshio_is_missing_the_extra_is_named(log, monkeypatch):
     monkeypatch.setitem(sys.modules, "meshio", None)
 
     assert "pip install 'softrig[mesh]'" in export(log, "--at", "2s").stderr
+
+
+def test_a_slice_from_before_a_rest_says_that_nothing_has_changed_since(tmp_path, recording):
+    rest = [replace(recording.slices[-1], host_ms=recording.slices[-1].host_ms + later_ms) for later_ms in (0, 2000)]
+    path = tmp_path / "rest.mcap"
+    with LogWriter(path) as writer:
+        for event in recording.events:
+            writer.record(event)
+        writer.mesh(recording.mesh, 1000)
+        for taken in [recording.slices[0], *rest]:
+            writer.slice(taken)
+
+    assert "slice at 2.800 s, as at 3.5 s: nothing changed between" in export(path, "--at", "3.5s").stderr
+    assert "nothing changed" not in export(path, "--at", "1s").stderr

@@ -57,7 +57,7 @@ def _export_fields(file: Path, fields: str, at: str, output: Path | None) -> Non
     from host.fieldfile import write_series, write_slice  # noqa: PLC0415  (numpy, which a table does not need)
 
     names = [name.strip() for name in fields.split(",")]
-    at_s = None if at == "all" else time_ms(at) / 1000
+    at_s = None if at == "all" else _seconds(at)
     recording = read_log(file).recording()
     with writing(output):
         if at_s is None:
@@ -65,7 +65,16 @@ def _export_fields(file: Path, fields: str, at: str, output: Path | None) -> Non
             note(f"{written.slices} slices from {written.t_s:.3f} s on: {written.path}")
         else:
             written = write_slice(recording, at_s, names, output)
-            note(f"slice at {written.t_s:.3f} s: {written.path}")
+            unchanged = f", as at {at_s:g} s: nothing changed between" if written.still else ""
+            note(f"slice at {written.t_s:.3f} s{unchanged}: {written.path}")
+
+
+def _seconds(at: str) -> float:
+    """Return a time that an operator wrote; BadRequest names the word that stands for all of them."""
+    try:
+        return time_ms(at) / 1000
+    except click.BadParameter as error:
+        raise BadRequest(f"--at {at}: write a time, as 2s, or all") from error
 
 
 @command.command("plot")
