@@ -235,3 +235,11 @@ def test_a_file_that_never_ends_is_refused_and_not_read_to_its_end(tmp_path):
 
     assert (found.code, found.place.line) == ("E115", 3)
     assert "it is larger than" in found.message
+
+
+def test_an_include_that_is_not_there_says_where_it_is_looked_for(tmp_path):
+    (tmp_path / "a.gait").write_text(f'{HEAD}include "absent.gait"\n')
+
+    (found,) = load(tmp_path / "a.gait").found
+
+    assert found.help == "its path begins at the folder of the script that includes it"

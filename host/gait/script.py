@@ -108,7 +108,8 @@ class _Loader:
             text = self.read(path)
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or "it is not UTF-8 text"
-            self._complain(included, "E115", f"`{path}` cannot be read: {reason}", path)
+            help = "its path begins at the folder of the script that includes it" if included else ""
+            self._complain(included, "E115", f"`{path}` cannot be read: {reason}", path, help)
             return None
         file, found = parse_file(text, path)
         self.found += found
@@ -120,7 +121,9 @@ class _Loader:
         self.files[path] = file
         return file
 
-    def _complain(self, included: tuple[File, Place] | None, code: str, message: str, path: str) -> None:
+    def _complain(
+        self, included: tuple[File, Place] | None, code: str, message: str, path: str, help: str = ""
+    ) -> None:
         place = included[1] if included else Place(path, 1, 1, 2)
         line = included[0].line(place.line) if included else ""
-        self.found.append(Diagnostic(place, code, message, "", line))
+        self.found.append(Diagnostic(place, code, message, help, line))
