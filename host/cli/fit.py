@@ -51,8 +51,8 @@ def press(file: Path, shape: str | None, spring: bool, plot_path: Path | None, a
     from host.fit.trace import press_of  # noqa: PLC0415
 
     log = read_log(file)
+    shape_m = shape_of(log) if shape is None else length_m(shape)  # before its push and hold: it may be no such press
     pressed = press_of(log)
-    shape_m = shape_of(log) if shape is None else length_m(shape)
     found = estimate(pressed, shape_m, spring)
     beside = None if spring else spring_beside(pressed, shape_m)
     fields = _fields(file, pressed, shape_m, found, beside)
