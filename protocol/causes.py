@@ -409,7 +409,7 @@ CODES = (
     Code(
         codes.LOAD_CELL, "F30", "counts",
         "The load cell reads the lower end of its range: it is torn off, or pulled far beyond it.",
-        FOUND,
+        FOUND + " The axis of a press stays where it is: its screw holds it.",
         "Check the load cell's wire, its amplifier and the converter, then `softrig clear`.",
     ),
 )  # fmt: skip

@@ -225,7 +225,7 @@ def test_info_tells_of_joints_what_they_may(softrig, line):
     told = softrig("info")
 
     assert told.status == 0
-    assert "  coils       no coils\n  joints      R L\n" in told.out
+    assert "  coils       none\n  joints      R L\n" in told.out
     assert "  one move    -30 to 30 deg, at most 360 deg/s, then held for 60 s\n" in told.out
     assert "  stall       trips at 2400 mA for 300 ms\n" in told.out
     assert "  astray      trips 1.5 deg beside its order for 1500 ms\n" in told.out

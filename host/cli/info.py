@@ -73,7 +73,7 @@ def _lines(fields: dict[str, Any]) -> Iterator[str]:
     if fields["paired"]:
         yield "  paired      takes orders only with its pairing key"
     yield f"  dictionary  {fields['dictionary']}, start number {fields['boot']}"
-    yield f"  coils       {' '.join(fields['coils']) or 'no coils'}"
+    yield f"  coils       {' '.join(fields['coils']) or 'none'}"
     if fields["joints"]:
         yield f"  joints      {' '.join(fields['joints'])}"
     for name, labels in fields["groups"].items():
