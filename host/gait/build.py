@@ -76,6 +76,31 @@ class Builder(Transformer[Token, Any]):
         word, count, body = items
         return tree.Repeat(count, body, self._place(word))
 
+    def for_each(self, items: Items) -> tree.ForEach:
+        """Return a block with the items it runs for."""
+        word, name, inside, *given, body = items
+        return tree.ForEach(self._name(name), tuple(given), body, self._place(word, inside).upto(given[-1].place))
+
+    def span(self, items: Items) -> tree.Span:
+        """Return whole numbers from one to another."""
+        first, last = items
+        return tree.Span(first, last, first.place.upto(last.place))
+
+    def sym(self, items: Items) -> tree.Sym:
+        """Return a block whose coils are turned."""
+        word, *turns, body = items
+        return tree.Sym(tuple(turns), body, self._place(word).upto(turns[-1].place))
+
+    def turn(self, items: Items) -> tree.Turn:
+        """Return an angle, about an axis."""
+        axis, angle = items
+        place = angle.place if axis is None else self._place(axis).upto(angle.place)
+        return tree.Turn(None if axis is None else self._name(axis), angle, place)
+
+    def on_fault(self, items: Items) -> tree.OnFault:
+        """Return what runs when the program is aborted."""
+        return tree.OnFault(items[2], self._place(items[0], items[1]))
+
     def together(self, items: Items) -> tree.Together:
         """Return a block whose statements start at once."""
         return tree.Together(items[1], self._place(items[0]))
@@ -83,6 +108,10 @@ class Builder(Transformer[Token, Any]):
     def fire(self, items: Items) -> tree.Fire:
         """Return a `fire` with its coils and clauses as written."""
         return tree.Fire(*self._order(items))
+
+    def hold(self, items: Items) -> tree.Hold:
+        """Return a `hold` with its coils and clauses as written."""
+        return tree.Hold(*self._order(items))
 
     def move(self, items: Items) -> tree.Move:
         """Return a `move` with its joints and clauses as written."""
@@ -106,7 +135,7 @@ class Builder(Transformer[Token, Any]):
         word, value = items
         return tree.Clause(str(word), value, self._place(word).upto(value.place))
 
-    timeout = motion = course = stroke = clause
+    timeout = motion = course = stroke = keeping = clause
 
     def otherwise(self, items: Items) -> tree.Otherwise:
         """Return `else NAME`."""
@@ -126,6 +155,14 @@ class Builder(Transformer[Token, Any]):
     def guard(self, items: Items) -> tree.Guard:
         """Return a guard."""
         return tree.Guard(items[1], self._place(items[0]).upto(items[1].place))
+
+    def note(self, items: Items) -> tree.Note:
+        """Return a note with its text."""
+        return tree.Note(str(items[1])[1:-1], self._place(items[0], items[1]))
+
+    def label(self, items: Items) -> tree.Label:
+        """Return a label."""
+        return tree.Label(self._name(items[1]), self._place(items[0], items[1]))
 
     def condition(self, items: Items) -> tree.Condition:
         """Return a condition."""

@@ -19,19 +19,28 @@ FORMS = {
     "let": "let NAME = CIRCLE[down + 1]",
     "def": "def NAME(ARGUMENTS):",
     "fire": "fire COILS at 60 % for 600 ms [until 95 C] [overlap 200 ms] [ramp 100 ms]",
+    "hold": "hold COILS at 80 C with 40 % for 5 s [overlap 1 s]",
     "move": "move JOINTS to 28 deg over 2 s [overlap 500 ms]",
     "orient": "orient 5 deg for 3 s [overlap 3 s]",
     "press": "press to 5 N over 1 s for 20 s [overlap 5 s]",
     "repeat": "repeat 3:",
+    "for": "for NAME in A B C:, or for NAME in 20 %, 40 %:, or for NAME in 1 .. 8:",
     "together": "together:",
+    "sym": "sym z 90 deg:, or sym 45 deg: on a ring",
     "wait": "wait 500 ms, or wait until A.temperature > 95 C timeout 4 s else continue",
     "guard": "guard any.temperature > 110 C",
+    "note": 'note "text"',
+    "label": "label NAME",
+    "on": "on fault:",
 }
-BLOCKS = ("def", "repeat", "together")
-CLAUSES = ("at", "for", "until", "overlap", "ramp", "to", "over", "timeout", "else", "is")
+BLOCKS = ("def", "repeat", "for", "together", "sym", "on")
+CLAUSES = ("at", "with", "for", "until", "overlap", "ramp", "to", "over", "timeout", "else", "is", "in", "fault")
 KEYWORDS = (*FORMS, *CLAUSES)
 NAMED = {"NUMBER": "a number", "NAME": "a name", "TEXT": "a text in quotation marks"}
-NAMES = {"NAME", "PRESS"}  # a robot may be called as a statement is
+NAMES = (  # a robot may be called as a statement is, a parameter as a word that came later
+    {"NAME", "PRESS"},
+    {"NAME", "IN", "HOLD", "WITH", "NOTE", "LABEL", "ON", "FAULT", "SYM"},
+)
 SIGNS = {
     "EQUAL": "=", "LPAR": "(", "RPAR": ")", "LSQB": "[", "RSQB": "]", "COLON": ":", "COMMA": ",",
     "DOT": ".", "__ANON_0": "..",
@@ -69,7 +78,7 @@ class _Reader:
         self.text = str(token)
         self.ends = self.kind in ("_NL", "$END", "_DEDENT")
         self.accepts = set(error.accepts or error.expected)
-        if self.accepts == NAMES:
+        if self.accepts in NAMES:
             self.accepts = {"NAME"}
         self.lines, self.name = lines, name
         self.line, self.column = token.line or len(lines), token.column or 1
@@ -109,7 +118,8 @@ class _Reader:
     def _statement(self) -> Diagnostic | None:
         """A line that begins with a word which is no statement."""
         word = self.first
-        if word in KEYWORDS and word not in FORMS:
+        lost = word == "for" and self.kind == "NUMBER" and self.accepts == {"NAME"}
+        if lost or (word in KEYWORDS and word not in FORMS):
             help = "this word belongs to a statement: put it on the line of its `fire`, `move`, `press` or `wait`"
             return self._word("E107", f"`{word}` does not begin a statement", help)
         if word.isidentifier() and word not in FORMS and self.accepts == {"LPAR"}:

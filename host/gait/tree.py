@@ -90,7 +90,7 @@ class Clause:
 
 @dataclass(frozen=True, slots=True)
 class Otherwise:
-    """`else NAME`: what a wait does when its time is over."""
+    """`else NAME`: what a wait does when its time is over, or the label it goes on at."""
 
     choice: Name
     place: Place
@@ -217,6 +217,15 @@ class Fire(Order):
 
 
 @dataclass(frozen=True, slots=True)
+class Hold(Order):
+    """Keep coils near a temperature for a time: a duty below it, nothing above it."""
+
+    coils: tuple[Coil, ...]
+    clauses: tuple[Clause, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
 class Move(Order):
     """Bring joints to an angle or a depth within a time."""
 
@@ -247,6 +256,51 @@ class Repeat:
     """A block that runs a counted number of times."""
 
     count: Expression | None
+    body: tuple[Statement, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """`1 .. 8`: whole numbers, both ends included."""
+
+    first: Expression
+    last: Expression
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class ForEach:
+    """A block that runs once for each item; one list of coils alone stands for its members."""
+
+    name: Name
+    items: tuple[Expression | Coils | Span, ...]
+    body: tuple[Statement, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """`z 90 deg`: an angle, about an axis of the body where it has axes."""
+
+    axis: Name | None
+    angle: Expression
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Sym:
+    """A block whose coils are those that the turns, one after another, bring in their places."""
+
+    turns: tuple[Turn, ...]
+    body: tuple[Statement, ...]
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class OnFault:
+    """A block that runs when the program is aborted."""
+
     body: tuple[Statement, ...]
     place: Place
 
@@ -285,6 +339,22 @@ class Guard:
 
 
 @dataclass(frozen=True, slots=True)
+class Note:
+    """A text that is kept in the log when the robot comes here."""
+
+    text: str
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A place further down that a wait may go on at."""
+
+    name: Name
+    place: Place
+
+
+@dataclass(frozen=True, slots=True)
 class Call:
     """Run a def with these arguments."""
 
@@ -310,14 +380,20 @@ Statement = (
     | Define
     | Let
     | Fire
+    | Hold
     | Move
     | Orient
     | Press
     | Repeat
+    | ForEach
     | Together
+    | Sym
+    | OnFault
     | Wait
     | WaitUntil
     | Guard
+    | Note
+    | Label
     | Call
     | Broken
 )
