@@ -241,7 +241,7 @@ ROWS = (
         "Lower duty or time, or let it cool longer."),
     Row("E307", REFUSED,
         "The program is larger than the robot's memory for it.",
-        "Use `repeat`, or split the script."),
+        "Use `repeat`, or send it in pieces: `softrig run --stream`."),
     Row("E308", REFUSED,
         "Repeats are nested deeper than the robot allows.",
         "Nest fewer."),
