@@ -30,6 +30,7 @@ from host.view import check_pictures, draw_run
 @click.option("--dry-run", is_flag=True, help="Check and upload, but do not arm: nothing moves.")
 @click.option("--log", "log_path", type=click.Path(path_type=Path), metavar="FILE.mcap", help="Record everything.")
 @click.option("--plot", "plot_path", type=click.Path(path_type=Path), metavar="FILE.svg", help="Draw the run.")
+@click.option("--from", "begin", type=int, default=1, metavar="STEP", help="Begin with a step that a run told of.")
 @if_lost_options
 @click.option("--outlive", is_flag=True, help="The program goes on should this host die; `softrig attach` takes it up.")
 @without_option
@@ -42,6 +43,7 @@ def command(
     dry_run: bool,
     log_path: Path | None,
     plot_path: Path | None,
+    begin: int,
     if_lost: str,
     patience: int,
     outlive: bool,
@@ -62,7 +64,7 @@ def command(
             face.connect()
             keeper.know(face.profile.parts)
             keeper.recording.title = f"{Path(script).name} on {address}"
-            compiled, worst = proven(tree, face.profile, params)
+            compiled, worst = proven(tree, face.profile, params, begin)
             _attach(log, compiled, face, address)
             channels = len(face.profile.labels)
             with shown(len(compiled.code), channels, worst.longest_ms / 1000, quiet=as_json) as progress:
