@@ -33,8 +33,8 @@ $(READY): pyproject.toml
 	else $(PYTHON) -m venv .venv; fi || { echo "$(PYTHON) could not make .venv: is its venv module installed?" \
 	  "(Debian, Ubuntu: apt install python3-venv)" >&2; exit 1; }
 	@echo "Installing softrig and its tools into .venv"
-	@{ command -v uv >/dev/null 2>&1 && uv pip install --quiet --python $(BIN)/python -e '.[dev,plot,can,data,fit,mesh]'; } \
-	|| $(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,plot,can,data,fit,mesh]'
+	@{ command -v uv >/dev/null 2>&1 && uv pip install --quiet --python $(BIN)/python -e '.[dev,plot,can,data,fit,mesh,lsp]'; } \
+	|| $(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,plot,can,data,fit,mesh,lsp]'
 	@echo "Compiling the physics for this machine"
 	@$(BIN)/softrig info --robot sim:circular >/dev/null
 	@$(BIN)/softrig info --robot sim:sphere-b >/dev/null
