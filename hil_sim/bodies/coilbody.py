@@ -41,6 +41,11 @@ class CoilBody:
         return self._state.R
 
     @property
+    def lengths(self) -> Array:
+        """Lengths of the coils between their attachments [m]."""
+        return self._state.L
+
+    @property
     @abstractmethod
     def force(self) -> Array:
         """Pulls of the coils [N]."""
