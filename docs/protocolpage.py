@@ -18,11 +18,11 @@ from protocol.variables import USUAL, VARIABLES, veiled
 Table = Callable[[tuple[str, ...], list[tuple[str, ...]]], str]
 BAUD = board.constants()["BAUD"]
 ARGUMENTS = {
-    "fire": "coils u32, duty u16 [permille], time u16 [ms], cut-off u16 [0.1 C; 0: none]",
+    "fire": "coils u32, duty u16 [permille], time u16 [ms], cut-off u16 [0.1 C; 0: none; 0x8000 added: kept near]",
     "ramp": "coils u32, duty u16 [permille], time u16 [ms], cut-off u16 [0.1 C; 0: none], ramp u16 [ms]",
     "delay": "time u32 [ms]",
     "repeat": "count u16",
-    "wait": "condition u64, timeout u32 [ms], otherwise u8 [0: abort, 1: continue]",
+    "wait": "condition u64, timeout u32 [ms], otherwise u8 [0: abort, 1: continue, 2 + n: go on at label n]",
     "guard": "condition u64",
     "step": "number u16",
     "off": "coils u32",
@@ -31,11 +31,15 @@ ARGUMENTS = {
     "move": "joints u32, target i16 [0.01 of the joint's unit], time u16 [ms]",
     "orient": "target i16 [0.01 deg], time u16 [ms]",
     "press": "target u16 [mN], over u16 [ms], time u32 [ms]",
+    "label": "number u8 [255: after an abort]",
+    "note": "step u16",
 }
 SOURCES = (
     "1 coil temperature, 2 supply current, 3 supply voltage, 4 board temperature, 5 coil heat, 6 roll, 7 pitch, "
     "8 coil nearest to down, 9 position of the joint [0.01 of its unit], 10 joint current [mA], 11 angle of the "
-    "gripped object [0.01 deg], 12 force on the load cell [mN], 13 pressure on the force cell [Pa]"
+    "gripped object [0.01 deg], 12 force on the load cell [mN], 13 pressure on the force cell [Pa], "
+    "14 resistance of the coil [0.01 ohm; not measured: does not hold], 15 share of martensite by it [permille], "
+    "16 time since the program began [ms, in the place of the mask]"
 )
 STATES = {
     "boot": "for less than a control step after its start",
@@ -172,6 +176,9 @@ def _programs(table: Table) -> dict[str, object]:
         "header_bytes": program.HEADER_BYTES,
         "format": program.FORMAT,
         "outlives": program.OUTLIVES_HOST,
+        "streamed": program.STREAMED,
+        "catches": program.CATCHES,
+        "labels_max": program.LABELS_MAX,
         "at_sync": messages.AT_SYNC,
         "ops": op_table(table),
         "sources": SOURCES,

@@ -8,7 +8,7 @@ in which nothing may have changed does not even look.
 
 from array import array
 
-from protocol import codes
+from protocol import codes, program
 
 FULL_PERMILLE = 1000
 UNKNOWN = 0xFFFF  # no duty: what the chip holds must be written anew
@@ -54,7 +54,10 @@ class Channels:
 
     def fire(self, mask: int, duty_permille: int, hold_ms: int, now_ms: int, cutoff_decidegc: int = 0,
              ramp_ms: int = 0) -> None:  # fmt: skip
-        """Drive these coils until now_ms + hold_ms, or raise Refused; those known to be broken are passed over."""
+        """Drive these coils until now_ms + hold_ms, or raise Refused; those known to be broken are passed over.
+
+        The cut-off is that of a program, with its KEEP.
+        """
         self._check(mask, duty_permille, hold_ms, now_ms)
         mask &= ~self.without_mask
         for channel in range(self.count):
@@ -82,11 +85,13 @@ class Channels:
                 cutoff = self._cutoff_decidegc[channel]
                 if now_ms - self._end_ms[channel] >= 0:
                     self._end(channel, now_ms)
-                elif cutoff and temperature_millidegc[channel] >= cutoff * 100:
+                elif 0 < cutoff < program.KEEP and temperature_millidegc[channel] >= cutoff * 100:
                     self._end(channel, now_ms)
                     self.cut_off_mask |= 1 << channel
                 elif now_ms - self._since_ms[channel] > self._on_max_ms:
                     return channel
+                elif cutoff >= program.KEEP:
+                    self._keep(channel, temperature_millidegc[channel] < (cutoff - program.KEEP) * 100)
                 elif self._ramp_ms[channel]:
                     self._ramp(channel, now_ms)
             mask >>= 1
@@ -187,6 +192,12 @@ class Channels:
         self.on_mask &= ~(1 << channel)
         self._target[channel] = 0
         self._drive(channel, 0)
+
+    def _keep(self, channel: int, is_below: bool) -> None:
+        """Heat a coil that is to be kept at a temperature only while it is below it."""
+        duty_permille = self._target[channel] if is_below else 0
+        if self.duty_permille[channel] != duty_permille:
+            self._drive(channel, duty_permille)
 
     def _ramp(self, channel: int, now_ms: int) -> None:
         ramp_ms = self._ramp_ms[channel]

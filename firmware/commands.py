@@ -20,6 +20,7 @@ class Commands:
         self._arming = -1  # number of the order that waits for its self-test, -1: none
         self._calibrates = False  # that order; else it arms
         self._lease_ms = 0  # that it asked for
+        self._paused = False  # whether the program that waits is to stand at its beginning
         self._at = self._begins = NOT  # when a program does that was verified: the robot's clock, NOT or ON_SYNC
         self._orders = (
             (messages.ARM, self._arm), (messages.DISARM, self._disarm), (messages.CLEAR, self._clear),
@@ -28,7 +29,7 @@ class Commands:
             (messages.START, self._start), (messages.CANCEL, self._cancel), (messages.COILS_REQUEST, self._coils),
             (messages.CALIBRATE, self._calibrate), (messages.SERVICE, self._service),
             (messages.MOVE, self._move), (messages.ORIENT, self._orient),
-            (messages.PRESS, self._press),
+            (messages.PRESS, self._press), (messages.PAUSE, self._pause),
         ) + core.records.orders()  # fmt: skip
 
     def serve(self, received) -> None:
@@ -48,6 +49,8 @@ class Commands:
             self._tested()
         if self.upload.request >= 0:
             self._verify(self.upload.request)
+        elif self.upload.streamed and self._core.state == messages.RUNNING:
+            self._verify_more()
         if self._begins >= 0 and self._core.now_ms - self._begins >= 0:
             self._begin()
 
@@ -107,6 +110,16 @@ class Commands:
             self._begins = self._at
         self.upload.request = -1
 
+    def _verify_more(self) -> None:
+        """Let the running program have what has come of it since; one that nobody may run is aborted."""
+        try:
+            self.upload.go_on()
+            self._sees()
+        except Refused as refused:
+            self._core.end_program(messages.ABORTED, refused.code, refused.value)
+        else:
+            self._core.player.end = self.upload.checked
+
     def _sees(self) -> None:
         """Raise Refused when a program asks for what this robot does not know now."""
         core, limbs = self._core, self._core.limbs
@@ -121,7 +134,7 @@ class Commands:
 
     def _begin(self) -> None:
         self._begins = NOT
-        self._core.start(self.upload.code)
+        self._core.start(self.upload, self._paused)
 
     def _understood(self, received) -> tuple:
         for message, handler in self._orders:
@@ -224,8 +237,8 @@ class Commands:
         core = self._core
         self.answer(
             messages.STATUS, request=seq, state=core.state, code=core.code, uptime_ms=core.now_ms & 0xFFFFFFFF,
-            lease_ms=core.lease_left_ms(), step=core.player.step, coils=core.control.driven_mask(),
-            supply_mv=core.sense.supply_mv, current_ma=core.sense.current_ma,
+            lease_ms=core.lease_left_ms(), step=core.player.step, paused=self._is_paused(),
+            coils=core.control.driven_mask(), supply_mv=core.sense.supply_mv, current_ma=core.sense.current_ma,
             board_decidegc=core.sense.board_decidegc, roll_decideg=core.attitude.roll_decideg(),
             pitch_decideg=core.attitude.pitch_decideg(), down=core.attitude.down_channel(),
             dropped=core.link.decoder.dropped & 0xFFFF, forged=core.link.forged & 0xFFFF,
@@ -242,8 +255,10 @@ class Commands:
         self.upload.begin(order.header)
 
     def _piece(self, order, seq: int) -> None:
-        self._not_running()
-        self.upload.piece(order.offset, order.code)
+        streams = self.upload.streamed and self._core.state == messages.RUNNING
+        if not streams:
+            self._not_running()
+        self.upload.piece(order.offset, order.code, self._core.player if streams else None)
 
     def _start(self, order, seq: int) -> bool:
         """Have the program verified; the answer follows when it is."""
@@ -253,8 +268,20 @@ class Commands:
         if on_sync and self._core.pairing.secured:
             raise Refused(codes.OPEN_START)
         self._at = ON_SYNC if on_sync else order.at_ms
+        self._paused = order.paused != 0
         self.upload.verify(seq)
         return True
+
+    def _pause(self, order, seq: int) -> None:
+        core = self._core
+        if core.state != messages.RUNNING:
+            raise Refused(codes.NOT_RUNNING)
+        if order.how == messages.PAUSE_NOW:
+            core.player.pause(core.now_ms)
+        elif order.how <= messages.ONE_STEP:
+            core.player.resume(core.now_ms, order.how == messages.ONE_STEP)
+        else:
+            raise Refused(codes.BAD_PAYLOAD)
 
     def _cancel(self, order, seq: int) -> None:
         """End the program, or do not start the one that is being verified."""
@@ -266,6 +293,9 @@ class Commands:
         elif self.upload.request >= 0:
             self._refuse(self.upload.request, Refused(codes.CANCELLED))
             self.upload.request = -1
+
+    def _is_paused(self) -> int:
+        return int(self._core.state == messages.RUNNING and self._core.player.paused)
 
     def _armed(self) -> None:
         self._not_tripped()

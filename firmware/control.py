@@ -34,8 +34,8 @@ class Control:
         self.guard = Guard(profile, self.sense, self.channels, board)
         self.attitude = _attitude(board, profile)
         self.limbs = _limbs(board, profile)
-        self.player = Player(self.channels, self.sense, self.attitude, self.limbs)
         self.resistance = Resistance(self.channels.count, profile.coil)
+        self.player = Player(self.channels, self.sense, self.attitude, self.limbs, self.resistance)
         self.slot = Slot(board, self.monitor, self.channels, self.sense, profile.coil.wiring_mohm, MOST_MOHM)
         self.patrol = Patrol(self.slot, self.channels, self.sense, self.resistance, profile)
         self.selftest = SelfTest(

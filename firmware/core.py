@@ -8,7 +8,7 @@ from firmware.commands import Commands
 from firmware.control import Control
 from firmware.greetings import Greetings
 from firmware.pairing import Pairing
-from firmware.player import FINISHED, TIMED_OUT, UNSEEN
+from firmware.player import FINISHED, STARVED, TIMED_OUT, UNSEEN
 from firmware.records import Records
 from firmware.reports import Reports
 from firmware.tasks import CONTROL, RECEIVE, Tasks
@@ -124,9 +124,9 @@ class Core:
         self.reports.event(messages.CLEARED)
         return True
 
-    def start(self, code: bytes) -> None:
-        """Run a code that was checked."""
-        self.player.load(code, self.now_ms)
+    def start(self, upload, paused: bool) -> None:
+        """Run a program that was checked, or have it stand at its beginning."""
+        self.player.load(upload, self.now_ms, paused)
         self.state = messages.RUNNING
         self.reports.event(messages.STARTED)
 
@@ -251,14 +251,29 @@ class Core:
         """The loop that turns the object ended for want of the camera: the joints hold, a program ends."""
         since_ms = self.now_ms - self.limbs.camera.seen_ms
         if self.state == messages.RUNNING:
-            self.end_program(messages.ABORTED, codes.CAMERA, since_ms)
+            self._abort(codes.CAMERA, since_ms)
         else:
             self.reports.event(messages.LOST, codes.CAMERA, 255, since_ms)
 
     def _end_program(self) -> None:
-        if self.player.outcome == FINISHED:
+        player = self.player
+        if player.outcome == FINISHED and player.failed:
+            self.end_program(messages.ABORTED, player.failed)
+        elif player.outcome == FINISHED:
             self.end_program(messages.FINISHED)
-        elif self.player.outcome == TIMED_OUT:
-            self.end_program(messages.ABORTED, codes.WAIT_TIMEOUT)
-        elif self.player.outcome == UNSEEN:
+        elif player.outcome == TIMED_OUT:
+            self._abort(codes.WAIT_TIMEOUT)
+        elif player.outcome == STARVED:
+            self.end_program(messages.ABORTED, codes.STARVED)
+        elif player.outcome == UNSEEN:
             self._lose_object()
+
+    def _abort(self, code: int, value: int = 0) -> None:
+        """Everything off; then what the program does when it was aborted, if it says so, else its end."""
+        if not self.player.catch(code, self.now_ms):
+            self.end_program(messages.ABORTED, self.player.failed or code, value)
+            return
+        self.channels.all_off(self.now_ms)
+        if self.limbs:
+            self.limbs.stand()
+        self.reports.event(messages.CAUGHT, code, 255, value)

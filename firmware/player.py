@@ -6,28 +6,47 @@ does not drift. Conditions are evaluated here, on every step; nothing waits for 
 
 from array import array
 
+from firmware.resistance import UNKNOWN
 from protocol import program
 
 OPS_PER_STEP = 32
+NOWHERE = -1
+BY_RESISTANCE = (program.RESISTANCE, program.MARTENSITE)
 WAIT = program.GUARDS_MAX  # where the condition of the wait is kept, behind those of the guards
 RUNNING, FINISHED, TIMED_OUT, GUARDED, LOST = 0, 1, 2, 3, 4  # LOST: it asked where down is, and nobody knows
 UNSEEN = 5  # it asked how the object lies, and no camera sees it
+STARVED = 6  # the next op of a streamed program was due and is not there
 
 
 class Player:
     """One program and where it stands."""
 
-    def __init__(self, channels, sense, attitude, limbs=None) -> None:
+    def __init__(self, channels, sense, attitude, limbs=None, resistance=None) -> None:
         self.step = 0  # number the program gave the step that runs, 0: none yet
         self.code = b""
+        self.end = 0  # how much of the code is there and may run
+        self.at = 0
+        self.gone = 0  # bytes of a streamed code that were dropped before it
+        self.failed = 0  # code of what has aborted the program that now runs its way after an abort
+        self.paused = False
+        self.noted = array("H", [0] * OPS_PER_STEP)  # steps of the notes that were passed, for the reports
+        self.notes = 0
         self.outcome = FINISHED
         self._channels = channels
         self._sense = sense
         self._attitude = attitude
         self._limbs = limbs
+        self._resistance = resistance
         self._blind = False
         self._unseen = False
-        self._at = 0
+        self._now_ms = 0
+        self._labels = array("H", [0] * program.LABELS_MAX)
+        self._fault_at = -1
+        self._streamed = False
+        self._skips_to = NOWHERE  # label that a streamed program is on its way to
+        self._steps_left = 0  # marks of steps until the pause that was asked for, 0: none was
+        self._paused_ms = 0
+        self._began_ms = 0
         self._cursor_ms = 0
         self._wait_until_ms = 0
         self._waiting = False
@@ -46,24 +65,59 @@ class Player:
         self._acts = (
             self._halt, self._fire, self._fire, self._delay, self._repeat,
             self._next, self._wait, self._guard, self._name, self._off, self._aim, self._aimed,
-            self._move, self._orient, self._press,
+            self._move, self._orient, self._press, self._label, self._note,
         )  # fmt: skip
 
-    def load(self, code: bytes, now_ms: int) -> None:
-        """Stand at the beginning of a code that was checked."""
-        self.code = code
-        self.step = 0
+    def load(self, upload, now_ms: int, paused: bool = False) -> None:
+        """Stand at the beginning of a program that was checked."""
+        self.code, self.end = upload.code, upload.checked
+        self._labels, self._fault_at, self._streamed = upload.labels, upload.fault_at, upload.streamed
+        self.step = self.at = self.gone = self.failed = self.notes = 0
         self.outcome = RUNNING
-        self._at = 0
-        self._cursor_ms = now_ms
+        self._cursor_ms = self._began_ms = self._paused_ms = now_ms
         self._waiting = False
-        self._depth = 0
-        self._guard_count = 0
+        self._skips_to = NOWHERE
+        self._depth = self._guard_count = self._steps_left = 0
+        self.paused = paused
+
+    def shift(self, count: int) -> None:
+        """Follow the code of a stream, whose first bytes were dropped."""
+        self.at -= count
+        self.end -= count
+        self.gone += count
+
+    def pause(self, now_ms: int) -> None:
+        """Let the program's clock stand still."""
+        if not self.paused:
+            self.paused = True
+            self._paused_ms = now_ms
+        self._steps_left = 0
+
+    def resume(self, now_ms: int, one_step: bool = False) -> None:
+        """Go on where the program's clock stands, for good or up to the next mark of a step."""
+        if self.paused:
+            late_ms = now_ms - self._paused_ms
+            self._cursor_ms += late_ms
+            self._wait_until_ms += late_ms
+            self._began_ms += late_ms
+            self.paused = False
+        stands_at_mark = self.step == 0 or (self.at < self.end and self.code[self.at] == program.STEP)
+        self._steps_left = 0 if not one_step else 2 if stands_at_mark else 1
+
+    def catch(self, code: int, now_ms: int) -> bool:
+        """Go on with what the program does when it was aborted; return whether there is such a way."""
+        if self._fault_at < 0 or self.failed:
+            return False
+        self.failed = code
+        self.outcome = RUNNING
+        self._go_to(program.ON_FAULT, now_ms)
+        return True
 
     def run(self, now_ms: int) -> int:
         """Go on as far as the time allows; return the outcome so far. Passes Refused on."""
+        self._now_ms = now_ms
         self._blind = self._unseen = False
-        outcome = GUARDED if self._guarded() else self._run_ops(now_ms)
+        outcome = GUARDED if self._guarded() else RUNNING if self.paused else self._run_ops(now_ms)
         if outcome != GUARDED:
             outcome = LOST if self._blind else UNSEEN if self._unseen else outcome
         self.outcome = outcome
@@ -73,17 +127,39 @@ class Player:
         for _ in range(OPS_PER_STEP):
             if now_ms - self._cursor_ms < 0:
                 return RUNNING
-            outcome = self._acts[self.code[self._at]](now_ms)
+            if self.at == self.end:
+                return STARVED if self._skips_to == NOWHERE else RUNNING
+            if self._skips_to != NOWHERE:
+                self._skip(now_ms)
+                continue
+            outcome = self._acts[self.code[self.at]](now_ms)
             if outcome >= 0:
                 return outcome
         return RUNNING
+
+    def _go_to(self, label: int, now_ms: int) -> None:
+        """Go on at a label, which in a stream may still have to come."""
+        self._cursor_ms = now_ms
+        self._depth = 0
+        self._waiting = False
+        if self._streamed:
+            self._skips_to = label
+        else:
+            self.at = self._fault_at if label == program.ON_FAULT else self._labels[label]
+
+    def _skip(self, now_ms: int) -> None:
+        """Pass an op on the way to a label."""
+        if self.code[self.at] == program.LABEL and self.code[self.at + 1] == self._skips_to:
+            self._skips_to = NOWHERE
+            self._cursor_ms = now_ms
+        self._go_on()
 
     def _halt(self, now_ms: int) -> int:
         busy = self._channels.busy(now_ms) or (self._limbs is not None and self._limbs.busy(now_ms))
         return RUNNING if busy else FINISHED
 
     def _fire(self, now_ms: int) -> int:
-        code, at = self.code, self._at
+        code, at = self.code, self.at
         ramp_ms = program.number(code, at + 11, 2) if code[at] == program.RAMP else 0
         self._channels.fire(
             program.number(code, at + 1, 4),
@@ -96,13 +172,13 @@ class Player:
         return self._go_on()
 
     def _delay(self, now_ms: int) -> int:
-        self._cursor_ms += program.number(self.code, self._at + 1, 4)
+        self._cursor_ms += program.number(self.code, self.at + 1, 4)
         return self._go_on()
 
     def _repeat(self, now_ms: int) -> int:
-        self._loop_left[self._depth] = program.number(self.code, self._at + 1, 2)
+        self._loop_left[self._depth] = program.number(self.code, self.at + 1, 2)
         self._go_on()
-        self._loop_at[self._depth] = self._at
+        self._loop_at[self._depth] = self.at
         self._depth += 1
         return -1
 
@@ -110,7 +186,7 @@ class Player:
         loop = self._depth - 1
         self._loop_left[loop] -= 1
         if self._loop_left[loop]:
-            self._at = self._loop_at[loop]
+            self.at = self._loop_at[loop]
             return -1
         self._depth = loop
         return self._go_on()
@@ -118,13 +194,17 @@ class Player:
     def _wait(self, now_ms: int) -> int:
         if not self._waiting:
             self._waiting = True
-            self._wait_until_ms = self._cursor_ms + program.number(self.code, self._at + 9, 4)
-            self._keep(WAIT, self._at + 1)
+            self._wait_until_ms = self._cursor_ms + program.number(self.code, self.at + 9, 4)
+            self._keep(WAIT, self.at + 1)
         met = self._holds(WAIT)
         if not met and now_ms - self._wait_until_ms < 0:
             return RUNNING
-        if not met and self.code[self._at + 13] == program.ABORT:
+        otherwise = self.code[self.at + 13]
+        if not met and otherwise == program.ABORT:
             return TIMED_OUT
+        if not met and otherwise >= program.JUMP:
+            self._go_to(otherwise - program.JUMP, now_ms)
+            return -1
         self._waiting = False
         self._cursor_ms = now_ms
         return self._go_on()
@@ -132,26 +212,31 @@ class Player:
     def _guard(self, now_ms: int) -> int:
         """Keep a guard, once: it may stand in a loop."""
         for i in range(self._guard_count):
-            if self._guards[i] == self._at:
+            if self._guards[i] == self.at:
                 return self._go_on()
-        self._guards[self._guard_count] = self._at
-        self._keep(self._guard_count, self._at + 1)
+        self._guards[self._guard_count] = self.at
+        self._keep(self._guard_count, self.at + 1)
         self._guard_count += 1
         return self._go_on()
 
     def _name(self, now_ms: int) -> int:
-        self.step = program.number(self.code, self._at + 1, 2)
+        if self._steps_left:
+            self._steps_left -= 1
+            if not self._steps_left:
+                self.pause(now_ms)
+                return RUNNING
+        self.step = program.number(self.code, self.at + 1, 2)
         return self._go_on()
 
     def _off(self, now_ms: int) -> int:
-        self._channels.off(program.number(self.code, self._at + 1, 4), now_ms)
+        self._channels.off(program.number(self.code, self.at + 1, 4), now_ms)
         return self._go_on()
 
     def _aim(self, now_ms: int) -> int:
         """Choose the coil that stands so many places after the one nearest to down in a circle."""
         if not self._attitude.known:
             return LOST
-        code, circle = self.code, self._at + 3
+        code, circle = self.code, self.at + 3
         count = nearest = most = 0
         while count < program.CIRCLE_MAX and code[circle + count] != program.NO_COIL:
             nearness = self._attitude.nearness(code[circle + count])
@@ -159,11 +244,11 @@ class Player:
                 most = nearness
                 nearest = count
             count += 1
-        self._chosen[code[self._at + 1]] = code[circle + (nearest + code[self._at + 2]) % count]
+        self._chosen[code[self.at + 1]] = code[circle + (nearest + code[self.at + 2]) % count]
         return self._go_on()
 
     def _aimed(self, now_ms: int) -> int:
-        code, at = self.code, self._at
+        code, at = self.code, self.at
         self._channels.fire(
             1 << self._chosen[code[at + 1]],
             program.number(code, at + 2, 2),
@@ -175,7 +260,7 @@ class Player:
         return self._go_on()
 
     def _move(self, now_ms: int) -> int:
-        code, at = self.code, self._at
+        code, at = self.code, self.at
         mask, over_ms = program.number(code, at + 1, 4), program.number(code, at + 7, 2)
         self._limbs.play_move(mask, program.signed(code, at + 5), over_ms, self._cursor_ms)
         return self._go_on()
@@ -183,18 +268,27 @@ class Player:
     def _orient(self, now_ms: int) -> int:
         if not self._limbs.sees():
             return UNSEEN
-        code, at = self.code, self._at
+        code, at = self.code, self.at
         self._limbs.play_turn(program.signed(code, at + 1), program.number(code, at + 3, 2), self._cursor_ms)
         return self._go_on()
 
     def _press(self, now_ms: int) -> int:
-        code, at = self.code, self._at
+        code, at = self.code, self.at
         target_mn, over_ms = program.number(code, at + 1, 2), program.number(code, at + 3, 2)
         self._limbs.play_push(target_mn, over_ms, program.number(code, at + 5, 4), self._cursor_ms)
         return self._go_on()
 
+    def _label(self, now_ms: int) -> int:
+        return self._go_on()
+
+    def _note(self, now_ms: int) -> int:
+        if self.notes < OPS_PER_STEP:  # as many as a control step passes
+            self.noted[self.notes] = program.number(self.code, self.at + 1, 2)
+            self.notes += 1
+        return self._go_on()
+
     def _go_on(self) -> int:
-        self._at += program.SIZES[self.code[self._at]]
+        self.at += program.SIZES[self.code[self.at]]
         return -1
 
     def _guarded(self) -> bool:
@@ -212,7 +306,7 @@ class Player:
         self._quantifiers[place] = code[at + 1] & 15
         self._compares[place] = code[at + 1] >> 4
         of_many = source in program.OF_COILS or source in program.OF_JOINTS or source in program.OF_CELLS
-        self._masks[place] = program.number(code, at + 4, 4) if of_many else 0
+        self._masks[place] = program.number(code, at + 4, 4) if of_many or source == program.TIME else 0
         self._values[place] = value
         self._readings[place] = None
         if source == program.TEMPERATURE:
@@ -239,14 +333,39 @@ class Player:
         mask, quantifier = self._masks[place], self._quantifiers[place]
         if quantifier == program.CHOSEN:
             mask = 1 << self._chosen[mask]
+        source = self._sources[place]
+        if source == program.TIME:
+            passed_ms = self._now_ms - self._began_ms
+            return passed_ms > mask if above else passed_ms < mask
+        if source in BY_RESISTANCE:
+            return self._holds_by_resistance(source, quantifier, mask, value, above)
         if readings is None:
-            return self._holds_for_robot(self._sources[place], mask, value, above)
+            return self._holds_for_robot(source, mask, value, above)
         want_all = quantifier == program.ALL
         channel = 0
         while mask:
             if mask & 1:
                 reading = readings[channel]
                 holds = reading > value if above else reading < value
+                if holds != want_all:
+                    return holds
+            mask >>= 1
+            channel += 1
+        return want_all
+
+    def _holds_by_resistance(self, source: int, quantifier: int, mask: int, value: int, above: bool) -> bool:
+        """Evaluate a condition on what the resistance tells; where it was not measured yet, it does not hold."""
+        resistance, want_all = self._resistance, quantifier == program.ALL
+        channel = 0
+        while mask:
+            if mask & 1:
+                if source == program.RESISTANCE:
+                    reading = resistance.measured_mohm(channel) // 10
+                    known = reading != 0
+                else:
+                    reading = resistance.martensite_permille(channel)
+                    known = reading != UNKNOWN
+                holds = known and (reading > value if above else reading < value)
                 if holds != want_all:
                     return holds
             mask >>= 1

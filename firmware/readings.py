@@ -20,6 +20,7 @@ class Readings:
             self._overruns, self._duties, self._temperatures, self._heats, self._resistances, self._martensites,
             self._least, self._most, self._can_state, self._can_overflows, self._can_refused, self._can_bus_offs,
             self._joint_positions, self._commanded, self._joint_currents, self._object, self._load, self._cells,
+            self._program_at,
         )  # fmt: skip
         self._core = core
         self._channels, self._sense, self._attitude = core.channels, core.sense, core.attitude
@@ -159,3 +160,6 @@ class Readings:
     def _cells(self, values: list) -> None:
         if self._limbs and self._limbs.cells:
             values.extend(self._limbs.cells.pressure_pa)
+
+    def _program_at(self, values: list) -> None:
+        values.append(self._core.player.gone + self._core.player.at)

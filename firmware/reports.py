@@ -17,6 +17,7 @@ class Reports:
         self._core = core
         self._player, self._channels, self._attitude = core.player, core.channels, core.attitude
         self._step = 0
+        self._paused = False
 
     def clock(self, payload: bytes) -> None:
         """Answer a question for the clock."""
@@ -33,7 +34,7 @@ class Reports:
         core = self._core
         if event in STOPS_STEPS:
             self._step = 0
-        if code:
+        if code and event != messages.CAUGHT:  # the end that follows has the same one
             core.records.note(self._now(), code, channel, value, core.was)
         if core.link.room() > ROOM:
             payload = messages.EVENT.pack(
@@ -43,12 +44,19 @@ class Reports:
             core.link.send(messages.EVENT.number, payload, core.now_ms)
 
     def tell(self) -> None:
-        """Send what the control step left to tell: a step, coils cut off, a lost sensor."""
+        """Send what the control step left to tell: notes, a step, a pause, coils cut off, a lost sensor."""
+        if self._player.notes:
+            self._notes()
         if self._player.step != self._step:
             self.step_done()
             self._step = self._player.step
             if self._step:
                 self.event(messages.STEP)
+        paused = self._player.paused and self._core.state == messages.RUNNING
+        if paused != self._paused:
+            self._paused = paused
+            if self._core.state == messages.RUNNING:
+                self.event(messages.PAUSED if paused else messages.RESUMED)
         if self._channels.cut_off_mask:
             self._cut_offs(self._core)
         if self._attitude.lost:
@@ -82,6 +90,11 @@ class Reports:
                 resistance.least_decidegc(channel), resistance.most_decidegc(channel),
             )  # fmt: skip
         return told
+
+    def _notes(self) -> None:
+        for place in range(self._player.notes):
+            self.event(messages.NOTED, step=self._player.noted[place])
+        self._player.notes = 0
 
     def _cut_offs(self, core) -> None:
         for channel in range(core.channels.count):

@@ -172,11 +172,11 @@ class Orders:
 
     def start(self, at_ms: int = messages.AT_ONCE) -> None:
         """Run the program that was uploaded: at once, or when the robot's clock shows `at_ms`."""
-        self.talk.order(messages.START, at_ms=at_ms)
+        self.talk.order(messages.START, paused=0, at_ms=at_ms)
 
     def ready(self) -> None:
         """Have the program that was uploaded wait for the next `sync`."""
-        self.talk.order(messages.START, at_ms=messages.AT_SYNC)
+        self.talk.order(messages.START, paused=0, at_ms=messages.AT_SYNC)
 
     def service(self) -> None:
         """Have the robot end its program and open its console, once; refused unless it is at rest."""

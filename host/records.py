@@ -74,6 +74,7 @@ class Status:
     uptime_ms: int
     lease_ms: int
     step: int
+    paused: bool
     coils: tuple[str, ...]
     supply_mv: int
     current_ma: int
@@ -172,6 +173,7 @@ def status_of(payload: bytes, labels: tuple[str, ...], host_ms: int) -> Status:
         uptime_ms=row.uptime_ms,
         lease_ms=row.lease_ms,
         step=row.step,
+        paused=row.paused != 0,
         coils=channel_names(row.coils, labels),
         supply_mv=row.supply_mv,
         current_ma=row.current_ma,

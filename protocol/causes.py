@@ -232,6 +232,18 @@ CODES = (
         "Ask for less; the limit is in the robot's profile.",
     ),
     Code(
+        codes.STARVED, "R37", "",
+        "The next order of a streamed program was due and had not arrived.",
+        "The program was aborted: all coils off, joints hold, still armed.",
+        "Look for what holds the line or the host up; upload a program that fits into the robot instead.",
+    ),
+    Code(
+        codes.NOT_RUNNING, "R38", "",
+        "No program runs that could be paused.",
+        NOTHING,
+        "Start one.",
+    ),
+    Code(
         codes.STOP, "F01", "",
         "A stop was received.",
         ALL_OFF,

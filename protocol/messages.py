@@ -38,10 +38,10 @@ BOOT, IDLE, ARMED, RUNNING, TRIPPED = 0, 1, 2, 3, 4
 
 EVENTS = (
     "", "started", "step", "finished", "aborted", "tripped", "disarmed", "cleared", "cut-off", "lost", "defaults",
-    "accepted", "step-done",
+    "accepted", "step-done", "paused", "resumed", "noted", "caught",
 )  # fmt: skip
 STARTED, STEP, FINISHED, ABORTED, TRIP, DISARMED, CLEARED, CUT_OFF, LOST, DEFAULTED = 1, 2, 3, 4, 5, 6, 7, 8, 9, 10
-ACCEPTED, STEP_DONE = 11, 12
+ACCEPTED, STEP_DONE, PAUSED, RESUMED, NOTED, CAUGHT = 11, 12, 13, 14, 15, 16
 
 ROLES = ("viewer", "holder")
 VIEWER, HOLDER = 0, 1
@@ -53,6 +53,9 @@ PARTS = ("definitions", "help")  # of the dictionary
 DEFINITIONS, HELP = 0, 1
 
 AT_ONCE, AT_SYNC = 0, 0xFFFFFFFF  # when a program starts, beside a time
+
+PAUSES = ("pause", "resume", "step")
+PAUSE_NOW, RESUME, ONE_STEP = 0, 1, 2
 
 CAUSES = ("", "power-on", "", "reset")  # of a start of the firmware
 POWER_ON, RESET = 1, 3
@@ -260,12 +263,13 @@ PROGRAM = Message(
 )  # fmt: skip
 CODE = Message(
     0x21, "code",  # A piece of the program's code.
-    Field("offset", "H"),  # Its first byte.
+    Field("offset", "H"),  # Its first byte; of a streamed program modulo 65536.
     Field("code", "s"),  # The piece.
 )  # fmt: skip
 START = Message(
     0x22, "start",  # Verifies the uploaded program and runs it.
     Field("at_ms", "I"),  # When, by the robot's clock; 0: at once; 4294967295: at the next `sync`.
+    Field("paused", "B"),  # 1: it stands still at its beginning, see `pause`. [0..1]
 )  # fmt: skip
 CANCEL = Message(0x23, "cancel")  # Ends the running program: all coils off, joints hold, still armed.
 
@@ -290,6 +294,11 @@ PRESS = Message(
     Field("hold_ms", "I"),  # The joint limp again after this long unless driven anew.
 )  # fmt: skip
 
+PAUSE = Message(
+    0x27, "pause",  # Stops the running program's clock. Orders on their way end by themselves; guards go on guarding.
+    Field("how", "B"),  # Or lets it go on, for good or up to the next step. [PAUSES]
+)  # fmt: skip
+
 OK = Message(
     0x40, "ok",  # The request was taken.
     Field("request", "B"),  # Sequence number of the request.
@@ -310,6 +319,7 @@ STATUS = Message(
     Field("uptime_ms", "I"),  # Time since boot.
     Field("lease_ms", "H"),  # What is left of the lease, 0: none.
     Field("step", "H"),  # Step of the program, 0: none.
+    Field("paused", "B"),  # 1: the program stands still. [0..1]
     Field("coils", "I"),  # Bit mask of the channels that are driven.
     Field("supply_mv", "H"),  # Supply voltage at the rail of coils and servos.
     Field("current_ma", "H"),  # Supply current.
@@ -390,8 +400,8 @@ MESSAGES = (
     HELLO, IDENTITY, DICTIONARY, DICTIONARY_PAGE, STOPPED, NAK, SYNC, WATCH,
     ALIVE, ARM, DISARM, CLEAR, FIRE, STATUS_REQUEST, SUBSCRIBE,
     FAULTS_REQUEST, CLEAR_FAULTS, SETTINGS_REQUEST, SET, CALIBRATE, COILS_REQUEST, SERVICE, CLOCK_REQUEST,
-    PROGRAM, CODE, START, CANCEL, MOVE, ORIENT, PRESS, OK, REFUSED, STATUS, FAULTS, SETTINGS, COILS, EVENT, TELEMETRY,
-    BEACON, BEACON_COILS, CLOCK,
+    PROGRAM, CODE, START, CANCEL, MOVE, ORIENT, PRESS, PAUSE, OK, REFUSED, STATUS, FAULTS, SETTINGS, COILS, EVENT,
+    TELEMETRY, BEACON, BEACON_COILS, CLOCK,
 )  # fmt: skip
 
 

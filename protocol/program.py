@@ -11,39 +11,45 @@ from binascii import crc32
 from collections import namedtuple
 
 HALT, FIRE, RAMP, DELAY, REPEAT, NEXT, WAIT, GUARD, STEP, OFF, AIM, AIMED = 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11
-MOVE, ORIENT, PRESS = 12, 13, 14
+MOVE, ORIENT, PRESS, LABEL, NOTE = 12, 13, 14, 15, 16
 NAMES = (
     "halt", "fire", "ramp", "delay", "repeat", "next", "wait", "guard", "step", "off", "aim", "aimed", "move", "orient",
-    "press",
+    "press", "label", "note",
 )  # fmt: skip
-SIZES = (1, 11, 13, 5, 3, 1, 14, 9, 3, 5, 11, 10, 9, 5, 9)
+SIZES = (1, 11, 13, 5, 3, 1, 14, 9, 3, 5, 11, 10, 9, 5, 9, 2, 3)
 
 # Bytes of each argument, below 0 where it is signed, of the ops that hold nothing but numbers.
 ARGUMENTS = {
     FIRE: (4, 2, 2, 2), RAMP: (4, 2, 2, 2, 2), DELAY: (4,), REPEAT: (2,), STEP: (2,), OFF: (4,),
     AIMED: (1, 2, 2, 2, 2), MOVE: (4, -2, 2), ORIENT: (-2, 2),
-    PRESS: (2, 2, 4),
+    PRESS: (2, 2, 4), LABEL: (1,), NOTE: (2,),
 }  # fmt: skip
 
 TEMPERATURE, CURRENT, VOLTAGE, BOARD, HEAT, ROLL, PITCH, DOWN = 1, 2, 3, 4, 5, 6, 7, 8  # sources of a condition
-POSITION, JOINT_CURRENT, ORIENTATION, FORCE, PRESSURE = 9, 10, 11, 12, 13
-OF_COILS = (TEMPERATURE, HEAT, DOWN)  # those that ask about the coils of the mask
+POSITION, JOINT_CURRENT, ORIENTATION, FORCE, PRESSURE, RESISTANCE, MARTENSITE, TIME = 9, 10, 11, 12, 13, 14, 15, 16
+OF_COILS = (TEMPERATURE, HEAT, DOWN, RESISTANCE, MARTENSITE)  # those that ask about the coils of the mask
 OF_JOINTS = (POSITION, JOINT_CURRENT)  # and about the joints of the mask
 OF_CELLS = (PRESSURE,)  # and about the force cells of the mask, in the order of the profile
 OF_ATTITUDE = (ROLL, PITCH, DOWN)
 ANY, ALL, CHOSEN = 0, 1, 2  # CHOSEN: the mask is the number of the place that holds an aimed coil
 BELOW, ABOVE = 0, 1
 IS_NOT, IS = 0, 1  # how DOWN compares
-ABORT, CONTINUE = 0, 1  # what a wait does when its time is over
+ABORT, CONTINUE, JUMP = 0, 1, 2  # what a wait does when its time is over; JUMP + n: goes on at label n
 
-FORMAT = 1
+FORMAT = 2
 HEADER_BYTES = 16
 OUTLIVES_HOST = 1  # header flag: keeps running when the lease runs out
+STREAMED = 2  # header flag: the code comes while it runs; it has no length and no loops
+CATCHES = 4  # header flag of a streamed code: an ON_FAULT will come
 DEPTH_MAX = 8
 GUARDS_MAX = 8
 AIMS_MAX = 4  # places for coils that the robot chose
 CIRCLE_MAX = 8  # coils of a circle
 NO_COIL = 255  # fills a circle that has fewer
+KEEP = 0x8000  # bit of a cut-off: the coil is kept near that temperature instead of ended
+TIME_MAX_MS = (1 << 30) - 1  # that a condition may ask for
+LABELS_MAX = 8
+ON_FAULT = 255  # label of what runs when the program is aborted; it stands behind a halt
 
 Header = namedtuple("Header", ("flags", "robot_crc", "length", "crc"))
 Condition = namedtuple("Condition", ("source", "quantifier", "compare", "value", "mask"))
@@ -58,7 +64,7 @@ class BadProgram(ValueError):
 
 
 def fire(mask: int, duty_permille: int, time_ms: int, cutoff_decidegc: int = 0) -> bytes:
-    """Heat these coils for that long, or until the estimate reaches the cut-off (0: none); does not wait."""
+    """Heat these coils for that long, or until the estimate reaches the cut-off (0: none, see KEEP); does not wait."""
     return _op(FIRE, (mask, 4), (duty_permille, 2), (time_ms, 2), (cutoff_decidegc, 2))
 
 
@@ -83,7 +89,7 @@ def next_() -> bytes:
 
 
 def wait(condition: Condition, timeout_ms: int, otherwise: int) -> bytes:
-    """Go on when the condition holds; after the time-out ABORT the program or CONTINUE."""
+    """Go on when the condition holds; after the time-out ABORT the program, CONTINUE, or go on at label n: JUMP + n."""
     return _op(WAIT) + _condition(condition) + timeout_ms.to_bytes(4, "little") + bytes((otherwise,))
 
 
@@ -128,14 +134,24 @@ def press(target_mn: int, over_ms: int, time_ms: int) -> bytes:
     return _op(PRESS, (target_mn, 2), (over_ms, 2), (time_ms, 4))
 
 
+def label(number: int) -> bytes:
+    """Mark a place that waits further up may go on at, or ON_FAULT: what follows runs when the program is aborted."""
+    return _op(LABEL, (number, 1))
+
+
+def note(step: int) -> bytes:
+    """Tell the host that the program has come to the note of that step."""
+    return _op(NOTE, (step, 2))
+
+
 def halt() -> bytes:
     """End the program once every coil it fired has ended and every joint it moved has arrived."""
     return _op(HALT)
 
 
 def header(code: bytes, robot_crc: int, flags: int = 0) -> bytes:
-    """Return the header of `code` for the robot whose profile has that CRC-32."""
-    numbers = (robot_crc, len(code), crc32(code))
+    """Return the header of `code` for the robot whose profile, with all its limits, has that CRC-32."""
+    numbers = (robot_crc, 0, 0) if flags & STREAMED else (robot_crc, len(code), crc32(code))
     return b"SG" + bytes((FORMAT, flags)) + b"".join([number.to_bytes(4, "little") for number in numbers])
 
 

@@ -52,6 +52,7 @@ VARIABLES = (
     Variable("object_centideg", "h@"),  # Angle of the gripped object as the camera sees it, -32768: not known.
     Variable("load_mn", "i!"),  # Force on the load cell, positive where it is pressed.
     Variable("cell_pa", "H#"),  # Pressure on the force cell.
+    Variable("program_at", "I"),  # Bytes of the program that its sequencer has passed.
 )
 
 

@@ -5,7 +5,11 @@ while not check.go_on(32):  # a piece of it in each control step
     ...
 """
 
+from array import array
+
 from protocol import program
+
+ALL = (1 << program.DEPTH_MAX + 1) - 1
 
 
 def check_code(code: bytes, coils: int, bytes_max: int, joints: int = 0, cells: int = 0) -> None:
@@ -18,49 +22,56 @@ def check_code(code: bytes, coils: int, bytes_max: int, joints: int = 0, cells: 
 class Check:
     """Verifies a code piece by piece, so that a control step need not wait for all of it.
 
-    Every op is whole and known, loops nest, guards are few, a coil is aimed before it is used, and the code ends with
-    HALT; else BadProgram. Limits of duty and time are not looked at here: the channels hold every order against them
-    as it runs. What it has seen so far asks where down is: `needs_attitude`; asks how the gripped object lies:
-    `needs_camera`; turns it by the camera: `needs_loop`; asks for the force on the load cell: `needs_load`; regulates
-    it: `needs_press`.
+    Every op is whole and known, loops nest and take time, guards are few, a coil is aimed before it is used, a wait
+    goes on at a label further down and outside all loops, and the code ends with HALT; else BadProgram. Limits of duty
+    and time are not looked at here: the channels hold every order against them as it runs.
+    What it has seen so far asks where down is: `needs_attitude`; asks how the gripped object lies: `needs_camera`;
+    turns it by the camera: `needs_loop`; asks for the force on the load cell: `needs_load`; regulates it:
+    `needs_press`. `labels` are the places of the labels, `fault_at` is that of ON_FAULT or -1.
+
+    Of a streamed code, which has no loops, `code` is the buffer that it comes to and `end` how much of it is there.
     """
 
-    def __init__(self, code: bytes, coils: int, bytes_max: int, joints: int = 0, cells: int = 0) -> None:
-        if not 0 < len(code) <= bytes_max:
+    def __init__(self, code: bytes, coils: int, bytes_max: int, joints: int = 0, cells: int = 0,
+                 streamed: bool = False) -> None:  # fmt: skip
+        if not streamed and not 0 < len(code) <= bytes_max:
             raise program.BadProgram(f"{len(code)} bytes of code, at most {bytes_max}")
         self.needs_attitude = self.needs_camera = self.needs_loop = self.needs_load = self.needs_press = False
+        self.at = 0  # what is before this has been looked at
+        self.end = 0 if streamed else len(code)
+        self.labels = array("H", [0] * program.LABELS_MAX)
+        self.fault_at = -1
+        self._streamed = streamed
         self._code = code
         self._coils = (1 << coils) - 1
         self._joints = (1 << coils + joints) - 1 - self._coils
         self._cells = (1 << cells) - 1
-        self._at = 0
-        self._op = program.HALT
+        self._op = program.STEP
         self._depth = 0
+        self._timed = 0  # mask of the loops, by their depth, in which time passes
         self._guards = 0
-        self._aims = 0  # mask of the places that hold a coil from here on: code only jumps back
+        self._aims = 0  # mask of the places that hold a coil from here on
+        self._aims_at = array("B", [0xFF] * program.LABELS_MAX)  # of those that hold one whenever a wait goes on there
+        self._seen = 0  # masks of labels: those that stand further up, and
+        self._wanted = 0  # those that a wait goes on at and that are still to come
 
     def go_on(self, ops: int) -> bool:
         """Look at that many more ops; return whether all has been seen."""
         for _ in range(ops):
-            if self._at == len(self._code):
+            if self.at == self.end:
                 break
             self._one()
-        if self._at < len(self._code):
-            return False
-        if self._op != program.HALT or self._depth or self._guards > program.GUARDS_MAX:
-            raise program.BadProgram(
-                f"needs a halt at its end, closed loops and at most {program.GUARDS_MAX} guards", self._at
-            )
+        if self.at < self.end or self._streamed:
+            return self.at == self.end
+        if self._op != program.HALT or self._depth or self._wanted:
+            raise program.BadProgram("needs a halt at its end, closed loops and every label that is named", self.at)
         return True
 
     def _one(self) -> None:
-        op, at = self._code[self._at], self._at
-        if op >= len(program.SIZES) or at + program.SIZES[op] > len(self._code):
+        op, at = self._code[self.at], self.at
+        if op >= len(program.SIZES) or at + program.SIZES[op] > self.end:
             raise program.BadProgram(f"op {op} unknown or cut short", at)
-        self._depth += (op == program.REPEAT) - (op == program.NEXT)
-        self._guards += op == program.GUARD
-        if self._depth < 0 or self._depth > program.DEPTH_MAX:
-            raise program.BadProgram(f"loops nested {self._depth} deep, at most {program.DEPTH_MAX}", at)
+        self._nest(op, at)
         self._masks(op, at)
         _check_arguments(self._code, at)
         self.needs_loop = self.needs_loop or op == program.ORIENT
@@ -71,10 +82,55 @@ class Check:
             self._aim(at)
         elif op == program.AIMED:
             self._chosen(self._code[at + 1], at)
+        elif op == program.LABEL:
+            self._label(self._code[at + 1], at)
         elif op in (program.WAIT, program.GUARD):
             self._condition(program.read_condition(self._code, at + 1), at)
+        if op == program.WAIT:
+            self._otherwise(self._code[at + 13], at)
         self._op = op
-        self._at += program.SIZES[op]
+        self.at += program.SIZES[op]
+
+    def _nest(self, op: int, at: int) -> None:
+        """Raise BadProgram where loops do not nest, or one takes no time, or guards are too many."""
+        if op == program.REPEAT:
+            self._depth += 1
+            self._timed &= ~(1 << self._depth)
+        elif op == program.NEXT:
+            if self._depth and not self._timed >> self._depth & 1:
+                raise program.BadProgram("a loop that takes no time", at)
+            self._depth -= 1
+        elif op == program.WAIT or (op == program.DELAY and program.number(self._code, at + 1, 4)):
+            self._timed = ALL
+        self._guards += op == program.GUARD
+        if self._depth < 0 or self._depth > program.DEPTH_MAX or (self._depth and self._streamed):
+            raise program.BadProgram(f"loops nested {self._depth} deep, at most {program.DEPTH_MAX}, streamed 0", at)
+        if self._guards > program.GUARDS_MAX:
+            raise program.BadProgram(f"{self._guards} guards, at most {program.GUARDS_MAX}", at)
+
+    def _otherwise(self, otherwise: int, at: int) -> None:
+        """Take note of the label that a wait goes on at."""
+        if otherwise < program.JUMP:
+            return
+        label = otherwise - program.JUMP
+        if label >= program.LABELS_MAX or self._seen >> label & 1:
+            raise program.BadProgram(f"label {label} is none that could come", at)
+        self._wanted |= 1 << label
+        self._aims_at[label] &= self._aims
+
+    def _label(self, label: int, at: int) -> None:
+        if label == program.ON_FAULT:
+            if self._op != program.HALT or self.fault_at >= 0 or self._wanted:
+                raise program.BadProgram("what runs after an abort does not stand by itself at the end", at)
+            self.fault_at = at
+            self._aims = 0
+        elif label >= program.LABELS_MAX or self._seen >> label & 1 or self._depth:
+            raise program.BadProgram(f"label {label} twice, or in a loop, or beyond {program.LABELS_MAX}", at)
+        else:
+            self._seen |= 1 << label
+            self._wanted &= ~(1 << label)
+            self.labels[label] = at
+            self._aims &= self._aims_at[label]
 
     def _aim(self, at: int) -> None:
         place, ahead, circle = self._code[at + 1], self._code[at + 2], program.read_circle(self._code, at)
@@ -93,7 +149,7 @@ class Check:
         source, quantifier = condition.source, condition.quantifier
         if quantifier == program.CHOSEN and source in program.OF_COILS:
             self._chosen(condition.mask, at)
-        elif not (program.TEMPERATURE <= source <= program.PRESSURE and quantifier <= program.ALL):
+        elif not (program.TEMPERATURE <= source <= program.TIME and quantifier <= program.ALL):
             raise program.BadProgram("a condition this robot does not know", at)
         elif source in program.OF_COILS:
             _check_mask(condition.mask, self._coils, at)
@@ -101,6 +157,8 @@ class Check:
             _check_mask(condition.mask, self._joints, at)
         elif source in program.OF_CELLS:
             _check_mask(condition.mask, self._cells, at)
+        elif source == program.TIME and condition.mask > program.TIME_MAX_MS:
+            raise program.BadProgram(f"a time of {condition.mask} ms, at most {program.TIME_MAX_MS}", at)
         if condition.compare > program.ABOVE:
             raise program.BadProgram("a condition this robot does not know", at)
         self.needs_attitude = self.needs_attitude or source in program.OF_ATTITUDE
@@ -132,5 +190,3 @@ def _check_arguments(code: bytes, at: int) -> None:
         raise program.BadProgram("a loop of no turns", at)
     if op == program.PRESS and program.number(code, at + 3, 2) > program.number(code, at + 5, 4):
         raise program.BadProgram("a force that is to be reached after the end of its order", at)
-    if op == program.WAIT and code[at + 13] not in (program.ABORT, program.CONTINUE):
-        raise program.BadProgram(f"a wait that ends in {code[at + 13]}", at)

@@ -55,6 +55,7 @@ class FakeRobot:
         self.orders: list[tuple] = []  # (time, name, payload's fields)
         self.code = bytearray()
         self.stops = 0
+        self.paused = False
         self.duty = [0] * len(self.parts.coils)
         self.joints = [FakeJoint() for _ in self.parts.joints]
         self.object_centideg = 0
@@ -225,7 +226,7 @@ class FakeRobot:
     def _status(self, seq: int, now_ms: int) -> None:
         self._send(
             messages.STATUS, now_ms, request=seq, state=self.state, code=0, uptime_ms=self.uptime_ms, lease_ms=0,
-            step=0, coils=self._driven(), supply_mv=self.supply_mv, current_ma=12, board_decidegc=231, dropped=0,
+            step=0, paused=int(self.paused), coils=self._driven(), supply_mv=self.supply_mv, current_ma=12, board_decidegc=231, dropped=0,
             forged=0, repeated=0, overruns=0, **self.attitude,
         )  # fmt: skip
 

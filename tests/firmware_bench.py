@@ -391,4 +391,4 @@ def run_program(rig: Rig, code: bytes, flags: int = 0, robot_crc: int | None = N
     header = program.header(code, rig.profile.crc if robot_crc is None else robot_crc, flags)
     answers = rig.upload(code, header)
     rig.arm()
-    return answers + rig.say(messages.START, at_ms=0)
+    return answers + rig.say(messages.START, paused=0, at_ms=0)

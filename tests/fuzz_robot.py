@@ -184,7 +184,7 @@ def _program(script: Script, robot_crc: int, seq: int, flags: int) -> tuple[byte
     rows = (
         (messages.PROGRAM.number, program.header(code, robot_crc, flags & 1)),
         (messages.CODE.number, messages.CODE.pack(offset=0, code=code)),
-        (messages.START.number, messages.START.pack(at_ms=messages.AT_SYNC if flags & 2 else 0)),
+        (messages.START.number, messages.START.pack(paused=0, at_ms=messages.AT_SYNC if flags & 2 else 0)),
     )
     line = b""
     for kind, payload in rows:

@@ -327,7 +327,7 @@ def orders(profile):
         (260, messages.COILS_REQUEST, {}),
         (300, messages.PROGRAM, {"header": program.header(code, crc)}),
         (310, messages.CODE, {"offset": 0, "code": code}),
-        (320, messages.START, {"at_ms": 0}),
+        (320, messages.START, {"at_ms": 0, "paused": 0}),
         (1900, messages.SETTINGS_REQUEST, {}),
         (1910, messages.SET, {"setting": messages.NODE, "channel": 255, "value": 3}),
         (1920, messages.FAULTS_REQUEST, {"skip": 0}),

@@ -16,6 +16,7 @@ from firmware.drivers.pca9685 import FULL, Pca9685
 from firmware.drivers.servo import Servo
 from firmware.profile import Profile
 from protocol import program
+from tests.loaded import Loaded
 
 STEP_MS = 5
 PWM_CHIPS = (0x60, 0x61)
@@ -151,7 +152,7 @@ def enter(core, state):
     if state == "firing":
         core.channels.fire(0b11, 300, 9000, core.now_ms)
     if state == "running":
-        core.start(script())
+        core.start(Loaded(script()), False)
     if state == "turning":
         core.profile.servo.astray_ms = 60_000  # no joint follows here
         core.limbs.move(0b01, 250, 100, 60_000, core.now_ms)

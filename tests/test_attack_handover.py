@@ -20,7 +20,7 @@ def rig():
 
 def test_a_program_that_waits_for_its_time_is_handed_over_with_the_lease(rig):
     at_ms = rig.now_ms + 500
-    rig.say(messages.START, at_ms=at_ms)
+    rig.say(messages.START, paused=0, at_ms=at_ms)
 
     rig.hello(OTHER, attach=SESSION)
     rig.run(1000)
@@ -31,7 +31,7 @@ def test_a_program_that_waits_for_its_time_is_handed_over_with_the_lease(rig):
 
 
 def test_a_program_that_waits_for_a_sync_is_handed_over_with_the_lease(rig):
-    rig.say(messages.START, at_ms=messages.AT_SYNC)
+    rig.say(messages.START, paused=0, at_ms=messages.AT_SYNC)
 
     rig.hello(OTHER, attach=SESSION)
     rig.run(100)
@@ -44,7 +44,7 @@ def test_a_program_that_waits_for_a_sync_is_handed_over_with_the_lease(rig):
 
 @pytest.mark.parametrize("word", [b"", messages.SYNC])
 def test_a_program_that_waits_does_not_start_for_a_host_that_did_not_take_it_over(rig, word):
-    rig.say(messages.START, at_ms=messages.AT_SYNC if word else rig.now_ms + 500)
+    rig.say(messages.START, paused=0, at_ms=messages.AT_SYNC if word else rig.now_ms + 500)
     rig.core.lease_ms = 1  # so short that the next host finds it over
 
     rig.hello(OTHER)

@@ -15,6 +15,7 @@ from firmware.profile import Profile
 from firmware.sense import Sense
 from protocol import program, verify
 from tests.firmware_bench import Table
+from tests.loaded import Loaded
 from tests.odd_robots import MIXED
 
 STEP_MS = 5
@@ -32,13 +33,14 @@ def condition(source, quantifier, compare, value, mask):
 
 
 CONDITIONS = st.builds(
-    condition, st.integers(0, 12), st.integers(0, 3), st.integers(0, 2), VALUES, MASKS | st.sampled_from([3, 1])
+    condition, st.integers(0, 16), st.integers(0, 3), st.integers(0, 2), VALUES, MASKS | st.sampled_from([3, 1])
 )
+SPIN = program.wait(condition(program.CURRENT, 0, 1, -0x8000, 0), 1, program.CONTINUE)  # holds at once
 LEGAL = (
     st.builds(program.move, JOINTS, st.integers(-1500, 1500), st.integers(170, 400))
     | st.builds(program.orient, st.integers(-3000, 3000), st.integers(100, 900))
     | st.builds(program.delay, st.integers(0, 200))
-    | st.sampled_from([300, 2000]).map(lambda turns: program.repeat(turns) + program.delay(0) + program.next_())
+    | st.sampled_from([300, 2000]).map(lambda turns: program.repeat(turns) + SPIN + program.next_())
 )
 WILD = (
     st.builds(program.move, MASKS, ANGLES, TIMES)
@@ -51,7 +53,7 @@ WILD = (
 BLOCKS = st.recursive(
     LEGAL | WILD,
     lambda inner: st.builds(
-        lambda count, body: program.repeat(count) + b"".join(body) + program.next_(),
+        lambda count, body: program.repeat(count) + SPIN + b"".join(body) + program.next_(),
         st.sampled_from([1, 3, 300, 65535]),
         st.lists(inner, min_size=1, max_size=4),
     ),
@@ -75,7 +77,7 @@ class Bare:
         self.told = ([], [])
         for _ in range(10):
             self.step()
-        self.player.load(code, self.now_ms)
+        self.player.load(Loaded(code, 2, 2), self.now_ms)
 
     def play(self, sights: list[str]) -> int:
         """Run for a second, in which the camera sees the object here or there, as it is told, or nothing."""

@@ -161,7 +161,7 @@ def test_all_start_at_any_time_at_which_the_word_is_said_however_busy_their_line
 
     spread_us = []
     for phase in range(30):
-        eight.order(messages.START, at_ms=messages.AT_SYNC)
+        eight.order(messages.START, paused=0, at_ms=messages.AT_SYNC)
         eight.ask(messages.STATUS_REQUEST)
         eight.rest_us(phase * PHASE_US)
         asked_us = eight.say_sync()

@@ -174,7 +174,7 @@ def test_a_program_whose_bytes_changed_on_the_way_does_not_start(rig):
     rig.upload(code[:5] + b"\x01" + code[6:], program.header(code, rig.profile.crc))
     rig.arm()
 
-    assert refusal(rig.say(messages.START, at_ms=0)).code == codes.BAD_CODE
+    assert refusal(rig.say(messages.START, paused=0, at_ms=0)).code == codes.BAD_CODE
 
 
 def test_a_long_program_is_verified_in_pieces_and_then_started(rig):
@@ -192,7 +192,7 @@ def test_a_program_that_waits_for_its_verification_dies_with_the_arming(rig):
     code = program.delay(1) * 400 + program.halt()
     rig.upload(code, program.header(code, rig.profile.crc))
     rig.arm()
-    rig.host.send(messages.START.number, messages.START.pack(at_ms=0), rig.now_ms)
+    rig.host.send(messages.START.number, messages.START.pack(paused=0, at_ms=0), rig.now_ms)
     rig.host.send(messages.DISARM.number, messages.DISARM.pack(), rig.now_ms)
 
     answers = rig.run(200)
@@ -205,7 +205,7 @@ def test_a_program_that_is_cancelled_while_it_is_verified_does_not_start(rig):
     code = program.fire(1, 300, 500) * 100 + program.halt()
     rig.upload(code, program.header(code, rig.profile.crc))
     rig.arm()
-    rig.host.send(messages.START.number, messages.START.pack(at_ms=0), rig.now_ms)
+    rig.host.send(messages.START.number, messages.START.pack(paused=0, at_ms=0), rig.now_ms)
     rig.host.send(messages.CANCEL.number, b"", rig.now_ms)
 
     answers = rig.run(200)
@@ -260,5 +260,5 @@ def test_a_new_session_is_not_told_of_the_last_one_s_start(rig):
 
 def start_of(rig):
     """Return the bytes of a start that the host sends now."""
-    rig.host.send(messages.START.number, messages.START.pack(at_ms=0), rig.now_ms)
+    rig.host.send(messages.START.number, messages.START.pack(paused=0, at_ms=0), rig.now_ms)
     return rig.host.poll(rig.now_ms)

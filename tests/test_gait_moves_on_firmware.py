@@ -16,6 +16,7 @@ from host.gait.checker import check
 from tests.firmware_bench import Table
 from tests.gait_scripts import compiled, hand, hand_robot, report
 from tests.joint_scripts import HOME, bodies
+from tests.loaded import Loaded
 
 STEP_MS = 5
 READY_MS = 50  # until the camera has been looked at
@@ -43,7 +44,7 @@ class Bare:
         while outcome == RUNNING:
             self.limbs.look(self.now_ms)
             if self.now_ms == READY_MS:
-                self.player.load(self.code, self.now_ms)
+                self.player.load(Loaded(self.code, 0, 2), self.now_ms)
             if self.now_ms >= READY_MS:
                 outcome = self.player.run(self.now_ms)
             before, were_on = list(self.limbs.joints.commanded_centi), self.limbs.joints.on_mask

@@ -14,6 +14,7 @@ from firmware.sense import Sense
 from host.gait.checker import check
 from tests.firmware_bench import Chip, Table
 from tests.gait_scripts import CIRCLE, ROUND, ball, ball_robot, compiled, report
+from tests.loaded import Loaded
 
 STEP_MS = 5
 
@@ -51,7 +52,7 @@ class Bare:
         self.player = Player(self.channels, self.sense, attitude or Blind())
         self.on_ms, self.heat_uj, self.at_once, self.too_long = [0] * 8, [0] * 8, 0, -1
         self.sense.begin_supply()
-        self.player.load(code, 0)
+        self.player.load(Loaded(code), 0)
         self.now_ms = 0
 
     def run(self) -> int:

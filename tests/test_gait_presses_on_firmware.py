@@ -17,6 +17,7 @@ from protocol import codes
 from tests.firmware_bench import Table
 from tests.firmware_press import Axis
 from tests.gait_scripts import block, compiled, press_robot, report
+from tests.loaded import Loaded
 from tests.press_scripts import HOME, bodies
 
 STEP_MS = 5
@@ -50,7 +51,7 @@ class Bare:
             self.axis.cell_counts = [min(4095, felt_pa * 4096 // 20_000)] * 6
             self.limbs.look(self.now_ms)
             if self.now_ms == READY_MS:
-                self.player.load(self.code, self.now_ms)
+                self.player.load(Loaded(self.code, 0, 1, 6), self.now_ms)
             if self.now_ms >= READY_MS:
                 outcome = self.player.run(self.now_ms)
             before, was_on = self.limbs.joints.commanded_centi[0], self.limbs.joints.on_mask

@@ -113,7 +113,7 @@ class Attacker:
         offset, size = self.random.randrange(1 << 16), self.random.randrange(200)
         self._say(messages.PROGRAM, header=program.header(bytes(self.random.choice((1, 4096, 4097))), self._robot))
         self._say(messages.CODE, offset=offset, code=self.random.randbytes(size))
-        self._say(messages.START, at_ms=0)
+        self._say(messages.START, paused=0, at_ms=0)
 
     def _program(self) -> None:
         code = self._code()
@@ -121,7 +121,7 @@ class Attacker:
         self._say(messages.PROGRAM, header=program.header(code, self._robot, self.random.randrange(2)))
         for at in range(0, len(code), 192):
             self._say(messages.CODE, offset=at, code=code[at : at + 192])
-        self._say(messages.START, at_ms=0)
+        self._say(messages.START, paused=0, at_ms=0)
 
     def _code(self) -> bytes:
         return program_of(self.random)

@@ -24,6 +24,11 @@ OPS = [
     (program.move(0b10, -250, 1000), "0c 02000000 06ff e803"),
     (program.orient(-30, 5000), "0d e2ff 8813"),
     (program.press(5000, 1000, 70_000), "0e 8813 e803 70110100"),
+    (program.label(3), "0f 03"),
+    (program.label(program.ON_FAULT), "0f ff"),
+    (program.note(7), "10 0700"),
+    (program.guard(Condition(program.TIME, 0, program.ABOVE, 0, 60_000)), "07 10 10 0000 60ea0000"),
+    (program.fire(0x01, 400, 5000, program.KEEP | 800), "01 01000000 9001 8813 2083"),
     (program.halt(), "00"),
 ]
 
@@ -37,7 +42,7 @@ def test_the_bytes_of_an_op_are_frozen_and_as_long_as_the_table_says(op, wire):
 def test_the_header_is_frozen_and_reads_back():
     header = program.header(b"\x00", 0xAABBCCDD, program.OUTLIVES_HOST)
 
-    assert header == bytes.fromhex("5347 01 01 ddccbbaa 01000000 8def02d2")
+    assert header == bytes.fromhex("5347 02 01 ddccbbaa 01000000 8def02d2")
     assert program.read_header(header) == (program.OUTLIVES_HOST, 0xAABBCCDD, 1, 0xD202EF8D)
 
 
@@ -152,8 +157,8 @@ BAD = {
     "an object without joints": (program.orient(500, 1000) + program.halt(), "this robot has none"),
     "a force without joints": (program.press(500, 0, 1000) + program.halt(), "this robot has none"),
     "duty above all": (program.fire(1, 1001, 1) + program.halt(), "duty 1001"),
-    "nine guards": (program.guard(CONDITION) * 9 + program.halt(), "at most 8 guards"),
-    "unknown source": (program.guard(Condition(14, 0, 0, 0, 1)) + program.halt(), "does not know"),
+    "nine guards": (program.guard(CONDITION) * 9 + program.halt(), "9 guards, at most 8"),
+    "unknown source": (program.guard(Condition(17, 0, 0, 0, 1)) + program.halt(), "does not know"),
     "unknown quantifier": (program.guard(Condition(1, 3, 0, 0, 1)) + program.halt(), "does not know"),
     "chosen current": (AIM + program.guard(Condition(2, 2, 0, 0, 0)) + program.halt(), "does not know"),
     "a coil used before it is aimed": (program.aimed(0, 1, 1) + AIM + program.halt(), "holds no coil"),
@@ -164,7 +169,22 @@ BAD = {
     "a circle beyond the robot": (program.aim(0, 0, [0, 8]) + program.halt(), "cannot be aimed"),
     "further than once around": (AIM[:2] + b"\x03" + AIM[3:] + program.halt(), "cannot be aimed"),
     "an aimed duty above all": (AIM + program.aimed(0, 1001, 1) + program.halt(), "duty 1001"),
-    "unknown end of wait": (program.wait(CONDITION, 1, 2) + program.halt(), "ends in 2"),
+    "a label that never comes": (program.wait(CONDITION, 1, 2) + program.halt(), "every label"),
+    "a ninth label": (program.wait(CONDITION, 1, 10) + program.halt(), "label 8 is none"),
+    "a jump back": (program.label(0) + program.wait(CONDITION, 1, 2) + program.halt(), "label 0 is none"),
+    "a label twice": (program.label(0) * 2 + program.halt(), "label 0 twice"),
+    "a label in a loop": (program.repeat(2) + program.label(0) + program.delay(1) + program.next_(), "in a loop"),
+    "a loop that takes no time": (program.repeat(2) + program.note(1) + program.next_() + program.halt(), "no time"),
+    "an abort in the midst": (program.delay(1) + program.label(255) + program.halt(), "by itself at the end"),
+    "two ways to abort": ((program.halt() + program.label(255)) * 2 + program.halt(), "by itself at the end"),
+    "a jump into the abort": (
+        program.wait(CONDITION, 1, 2) + program.halt() + program.label(255) + program.label(0) + program.halt(),
+        "by itself at the end",
+    ),
+    "a coil not aimed on every way": (
+        program.wait(CONDITION, 1, 2) + AIM + program.label(0) + program.aimed(0, 1, 1) + program.halt(), "no coil",
+    ),
+    "a time beyond the clock": (program.guard(Condition(16, 0, 1, 0, 1 << 30)) + program.halt(), "a time of"),
     "too long": (program.delay(1) * 30 + program.halt(), "at most 100"),
 }
 
@@ -186,7 +206,43 @@ def test_random_bytes_are_refused_or_can_be_taken_apart(code):
     assert program.disassemble(code)[-1][1] == "halt"
 
 
-@pytest.mark.parametrize("data", [b"", bytes(16), b"SG\x02" + bytes(13)])
+@pytest.mark.parametrize("data", [b"", bytes(16), b"SG\x01" + bytes(13)])
 def test_a_foreign_header_is_refused(data):
     with pytest.raises(program.BadProgram):
         program.read_header(data)
+
+
+def test_the_labels_and_the_way_after_an_abort_are_found():
+    wait = program.wait(CONDITION, 1, program.JUMP + 5)
+    code = program.repeat(2) + wait + program.next_() + program.label(5) + program.halt() + program.label(255)
+    check = verify.Check(code + program.halt(), coils=8, bytes_max=100)
+
+    assert check.go_on(len(code))
+    assert check.labels[5] == len(program.repeat(2) + wait + program.next_())
+    assert check.fault_at == len(code) - len(program.label(255))
+
+
+def test_a_coil_that_is_aimed_on_every_way_to_a_label_may_be_used():
+    wait = program.wait(CONDITION, 1, program.JUMP)
+
+    verify.check_code(AIM + wait + AIM + program.label(0) + program.aimed(0, 1, 1) + program.halt(), 8, 100)
+
+
+def test_a_streamed_code_is_verified_as_far_as_it_has_come():
+    buffer = bytearray(64)
+    check = verify.Check(buffer, coils=8, bytes_max=64, streamed=True)
+    assert check.go_on(32)
+    for piece in (program.fire(1, 500, 700) + program.delay(700), program.halt()):
+        buffer[check.end : check.end + len(piece)] = piece
+        check.end += len(piece)
+        assert check.go_on(32)
+        assert check.at == check.end
+
+
+def test_a_streamed_code_has_no_loops():
+    buffer = bytearray(program.repeat(2) + program.delay(1))
+    check = verify.Check(buffer, coils=8, bytes_max=64, streamed=True)
+    check.end = len(buffer)
+
+    with pytest.raises(program.BadProgram, match="streamed 0"):
+        check.go_on(32)

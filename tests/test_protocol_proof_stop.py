@@ -114,24 +114,24 @@ def loaded(rig, code):
 
 def verifying(rig):
     loaded(rig, program.fire(1, 0, 0) * 200 + program.halt())
-    rig.host.send(messages.START.number, messages.START.pack(at_ms=0), rig.now_ms)
+    rig.host.send(messages.START.number, messages.START.pack(paused=0, at_ms=0), rig.now_ms)
     rig.run(5)
     assert rig.core.commands.upload.request >= 0
 
 
 def waits_for_sync(rig):
     loaded(rig, program.fire(1, 500, 1000) + program.delay(1000) + program.halt())
-    rig.say(messages.START, at_ms=messages.AT_SYNC)
+    rig.say(messages.START, paused=0, at_ms=messages.AT_SYNC)
 
 
 def waits_for_its_time(rig):
     loaded(rig, program.fire(1, 500, 1000) + program.delay(1000) + program.halt())
-    rig.say(messages.START, at_ms=rig.now_ms + 60)
+    rig.say(messages.START, paused=0, at_ms=rig.now_ms + 60)
 
 
 def running(rig):
     loaded(rig, program.fire(1, 500, 1000) + program.delay(1000) + program.halt())
-    rig.say(messages.START, at_ms=0)
+    rig.say(messages.START, paused=0, at_ms=0)
     rig.run(20)
     assert any(rig.board.chip.duty_permille)
 
@@ -202,7 +202,7 @@ def test_a_stop_is_latched_until_clear(state):
         (messages.FIRE, {"coils": 1, "duty_permille": 500, "hold_ms": 1000}),
         (messages.PROGRAM, {"header": program.header(code, rig.profile.crc)}),
         (messages.CODE, {"offset": 0, "code": code}),
-        (messages.START, {"at_ms": 0}),
+        (messages.START, {"at_ms": 0, "paused": 0}),
         (messages.SYNC, {}),
         (messages.CALIBRATE, {"session": SESSION, "without": 0}),
         (messages.DISARM, {}),

@@ -135,7 +135,7 @@ def test_a_paired_robot_does_not_wait_for_a_sync_that_anybody_may_say():
     rig = PairedRig()
     rig.arm()
 
-    answers = rig.say(messages.START, at_ms=messages.AT_SYNC)
+    answers = rig.say(messages.START, paused=0, at_ms=messages.AT_SYNC)
 
     assert refusal(answers).code == codes.OPEN_START
 

@@ -71,6 +71,7 @@ enum {
     SOFTRIG_KIND_MOVE = 0x24,
     SOFTRIG_KIND_ORIENT = 0x25,
     SOFTRIG_KIND_PRESS = 0x26,
+    SOFTRIG_KIND_PAUSE = 0x27,
     SOFTRIG_KIND_OK = 0x40,
     SOFTRIG_KIND_REFUSED = 0x41,
     SOFTRIG_KIND_STATUS = 0x42,
@@ -104,7 +105,11 @@ enum {
     SOFTRIG_EVENTS_LOST = 9,
     SOFTRIG_EVENTS_DEFAULTS = 10,
     SOFTRIG_EVENTS_ACCEPTED = 11,
-    SOFTRIG_EVENTS_STEP_DONE = 12
+    SOFTRIG_EVENTS_STEP_DONE = 12,
+    SOFTRIG_EVENTS_PAUSED = 13,
+    SOFTRIG_EVENTS_RESUMED = 14,
+    SOFTRIG_EVENTS_NOTED = 15,
+    SOFTRIG_EVENTS_CAUGHT = 16
 };
 
 enum {
@@ -121,6 +126,12 @@ enum {
 enum {
     SOFTRIG_PARTS_DEFINITIONS = 0,
     SOFTRIG_PARTS_HELP = 1
+};
+
+enum {
+    SOFTRIG_PAUSES_PAUSE = 0,
+    SOFTRIG_PAUSES_RESUME = 1,
+    SOFTRIG_PAUSES_STEP = 2
 };
 
 enum {
@@ -177,6 +188,8 @@ enum {
     SOFTRIG_CODES_R34 = 34,
     SOFTRIG_CODES_R35 = 35,
     SOFTRIG_CODES_R36 = 36,
+    SOFTRIG_CODES_R37 = 37,
+    SOFTRIG_CODES_R38 = 38,
     SOFTRIG_CODES_F01 = 101,
     SOFTRIG_CODES_F02 = 102,
     SOFTRIG_CODES_F03 = 103,
@@ -1234,7 +1247,7 @@ static inline int softrig_unpack_program(softrig_program *out, softrig_bytes pay
 /* 0x21 code: A piece of the program's code. */
 #define SOFTRIG_CODE_BYTES 2u /* at least */
 typedef struct softrig_code {
-    uint16_t offset; /* Its first byte. */
+    uint16_t offset; /* Its first byte; of a streamed program modulo 65536. */
     softrig_bytes code; /* The piece. */
 } softrig_code;
 
@@ -1259,16 +1272,18 @@ static inline int softrig_unpack_code(softrig_code *out, softrig_bytes payload)
 }
 
 /* 0x22 start: Verifies the uploaded program and runs it. */
-#define SOFTRIG_START_BYTES 4u
+#define SOFTRIG_START_BYTES 5u
 typedef struct softrig_start {
     uint32_t at_ms; /* When, by the robot's clock; 0: at once; 4294967295: at the next sync. */
+    uint8_t paused; /* 1: it stands still at its beginning, see pause. 0 to 1. */
 } softrig_start;
 
 static inline int softrig_pack_start(const softrig_start *in, uint8_t *out, size_t room)
 {
-    if (room < SOFTRIG_START_BYTES)
+    if (room < SOFTRIG_START_BYTES || in->paused > 1)
         return -1;
     softrig_put32(out, in->at_ms);
+    out[4] = in->paused;
     return (int)SOFTRIG_START_BYTES;
 }
 
@@ -1277,6 +1292,7 @@ static inline int softrig_unpack_start(softrig_start *out, softrig_bytes payload
     if (payload.size != SOFTRIG_START_BYTES)
         return -1;
     out->at_ms = softrig_get32(payload.at);
+    out->paused = payload.at[4];
     return 0;
 }
 
@@ -1373,6 +1389,28 @@ static inline int softrig_unpack_press(softrig_press *out, softrig_bytes payload
     return 0;
 }
 
+/* 0x27 pause: Stops the running program's clock. Orders on their way end by themselves; guards go on guarding. */
+#define SOFTRIG_PAUSE_BYTES 1u
+typedef struct softrig_pause {
+    uint8_t how; /* Or lets it go on, for good or up to the next step. SOFTRIG_PAUSES_... */
+} softrig_pause;
+
+static inline int softrig_pack_pause(const softrig_pause *in, uint8_t *out, size_t room)
+{
+    if (room < SOFTRIG_PAUSE_BYTES)
+        return -1;
+    out[0] = in->how;
+    return (int)SOFTRIG_PAUSE_BYTES;
+}
+
+static inline int softrig_unpack_pause(softrig_pause *out, softrig_bytes payload)
+{
+    if (payload.size != SOFTRIG_PAUSE_BYTES)
+        return -1;
+    out->how = payload.at[0];
+    return 0;
+}
+
 /* 0x40 ok: The request was taken. */
 #define SOFTRIG_OK_BYTES 1u
 typedef struct softrig_ok {
@@ -1430,7 +1468,7 @@ static inline int softrig_unpack_refused(softrig_refused *out, softrig_bytes pay
 }
 
 /* 0x42 status: Answers status_request. */
-#define SOFTRIG_STATUS_BYTES 35u
+#define SOFTRIG_STATUS_BYTES 36u
 typedef struct softrig_status {
     uint8_t request; /* Sequence number of the request. */
     uint8_t state; /* State of the robot. SOFTRIG_STATES_... */
@@ -1438,6 +1476,7 @@ typedef struct softrig_status {
     uint32_t uptime_ms; /* Time since boot. */
     uint16_t lease_ms; /* What is left of the lease, 0: none. */
     uint16_t step; /* Step of the program, 0: none. */
+    uint8_t paused; /* 1: the program stands still. 0 to 1. */
     uint32_t coils; /* Bit mask of the channels that are driven. */
     uint16_t supply_mv; /* Supply voltage at the rail of coils and servos. */
     uint16_t current_ma; /* Supply current. */
@@ -1453,7 +1492,7 @@ typedef struct softrig_status {
 
 static inline int softrig_pack_status(const softrig_status *in, uint8_t *out, size_t room)
 {
-    if (room < SOFTRIG_STATUS_BYTES)
+    if (room < SOFTRIG_STATUS_BYTES || in->paused > 1)
         return -1;
     out[0] = in->request;
     out[1] = in->state;
@@ -1461,17 +1500,18 @@ static inline int softrig_pack_status(const softrig_status *in, uint8_t *out, si
     softrig_put32(out + 4, in->uptime_ms);
     softrig_put16(out + 8, in->lease_ms);
     softrig_put16(out + 10, in->step);
-    softrig_put32(out + 12, in->coils);
-    softrig_put16(out + 16, in->supply_mv);
-    softrig_put16(out + 18, in->current_ma);
-    softrig_put16(out + 20, (uint16_t)in->board_decidegc);
-    softrig_put16(out + 22, (uint16_t)in->roll_decideg);
-    softrig_put16(out + 24, (uint16_t)in->pitch_decideg);
-    out[26] = in->down;
-    softrig_put16(out + 27, in->dropped);
-    softrig_put16(out + 29, in->forged);
-    softrig_put16(out + 31, in->repeated);
-    softrig_put16(out + 33, in->overruns);
+    out[12] = in->paused;
+    softrig_put32(out + 13, in->coils);
+    softrig_put16(out + 17, in->supply_mv);
+    softrig_put16(out + 19, in->current_ma);
+    softrig_put16(out + 21, (uint16_t)in->board_decidegc);
+    softrig_put16(out + 23, (uint16_t)in->roll_decideg);
+    softrig_put16(out + 25, (uint16_t)in->pitch_decideg);
+    out[27] = in->down;
+    softrig_put16(out + 28, in->dropped);
+    softrig_put16(out + 30, in->forged);
+    softrig_put16(out + 32, in->repeated);
+    softrig_put16(out + 34, in->overruns);
     return (int)SOFTRIG_STATUS_BYTES;
 }
 
@@ -1485,17 +1525,18 @@ static inline int softrig_unpack_status(softrig_status *out, softrig_bytes paylo
     out->uptime_ms = softrig_get32(payload.at + 4);
     out->lease_ms = softrig_get16(payload.at + 8);
     out->step = softrig_get16(payload.at + 10);
-    out->coils = softrig_get32(payload.at + 12);
-    out->supply_mv = softrig_get16(payload.at + 16);
-    out->current_ma = softrig_get16(payload.at + 18);
-    out->board_decidegc = softrig_signed16(softrig_get16(payload.at + 20));
-    out->roll_decideg = softrig_signed16(softrig_get16(payload.at + 22));
-    out->pitch_decideg = softrig_signed16(softrig_get16(payload.at + 24));
-    out->down = payload.at[26];
-    out->dropped = softrig_get16(payload.at + 27);
-    out->forged = softrig_get16(payload.at + 29);
-    out->repeated = softrig_get16(payload.at + 31);
-    out->overruns = softrig_get16(payload.at + 33);
+    out->paused = payload.at[12];
+    out->coils = softrig_get32(payload.at + 13);
+    out->supply_mv = softrig_get16(payload.at + 17);
+    out->current_ma = softrig_get16(payload.at + 19);
+    out->board_decidegc = softrig_signed16(softrig_get16(payload.at + 21));
+    out->roll_decideg = softrig_signed16(softrig_get16(payload.at + 23));
+    out->pitch_decideg = softrig_signed16(softrig_get16(payload.at + 25));
+    out->down = payload.at[27];
+    out->dropped = softrig_get16(payload.at + 28);
+    out->forged = softrig_get16(payload.at + 30);
+    out->repeated = softrig_get16(payload.at + 32);
+    out->overruns = softrig_get16(payload.at + 34);
     return 0;
 }
 

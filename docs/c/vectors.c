@@ -988,10 +988,12 @@ static void payload_51(void)
     static held payload, packed;
     softrig_start in, out;
     in.at_ms = 0u;
-    hex(&payload, "00000000");
+    in.paused = 0u;
+    hex(&payload, "0000000000");
     check(same(packed.at, softrig_pack_start(&in, packed.at, HELD_MAX), &payload), "start 51");
     check(softrig_unpack_start(&out, view(&payload)) == 0, "start 51");
     check(out.at_ms == in.at_ms, "start 51");
+    check(out.paused == in.paused, "start 51");
 }
 
 static void payload_52(void)
@@ -999,10 +1001,12 @@ static void payload_52(void)
     static held payload, packed;
     softrig_start in, out;
     in.at_ms = 4294967295u;
-    hex(&payload, "ffffffff");
+    in.paused = 1u;
+    hex(&payload, "ffffffff01");
     check(same(packed.at, softrig_pack_start(&in, packed.at, HELD_MAX), &payload), "start 52");
     check(softrig_unpack_start(&out, view(&payload)) == 0, "start 52");
     check(out.at_ms == in.at_ms, "start 52");
+    check(out.paused == in.paused, "start 52");
 }
 
 static void payload_53(void)
@@ -1010,10 +1014,12 @@ static void payload_53(void)
     static held payload, packed;
     softrig_start in, out;
     in.at_ms = 3454992675u;
-    hex(&payload, "2301efcd");
+    in.paused = 0u;
+    hex(&payload, "2301efcd00");
     check(same(packed.at, softrig_pack_start(&in, packed.at, HELD_MAX), &payload), "start 53");
     check(softrig_unpack_start(&out, view(&payload)) == 0, "start 53");
     check(out.at_ms == in.at_ms, "start 53");
+    check(out.paused == in.paused, "start 53");
 }
 
 static void payload_54(void)
@@ -1166,37 +1172,70 @@ static void payload_62(void)
 static void payload_63(void)
 {
     static held payload, packed;
-    softrig_ok in, out;
-    in.request = 0u;
+    softrig_pause in, out;
+    in.how = 0u;
     hex(&payload, "00");
-    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 63");
-    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 63");
-    check(out.request == in.request, "ok 63");
+    check(same(packed.at, softrig_pack_pause(&in, packed.at, HELD_MAX), &payload), "pause 63");
+    check(softrig_unpack_pause(&out, view(&payload)) == 0, "pause 63");
+    check(out.how == in.how, "pause 63");
 }
 
 static void payload_64(void)
 {
     static held payload, packed;
-    softrig_ok in, out;
-    in.request = 255u;
+    softrig_pause in, out;
+    in.how = 255u;
     hex(&payload, "ff");
-    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 64");
-    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 64");
-    check(out.request == in.request, "ok 64");
+    check(same(packed.at, softrig_pack_pause(&in, packed.at, HELD_MAX), &payload), "pause 64");
+    check(softrig_unpack_pause(&out, view(&payload)) == 0, "pause 64");
+    check(out.how == in.how, "pause 64");
 }
 
 static void payload_65(void)
 {
     static held payload, packed;
-    softrig_ok in, out;
-    in.request = 35u;
+    softrig_pause in, out;
+    in.how = 35u;
     hex(&payload, "23");
-    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 65");
-    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 65");
-    check(out.request == in.request, "ok 65");
+    check(same(packed.at, softrig_pack_pause(&in, packed.at, HELD_MAX), &payload), "pause 65");
+    check(softrig_unpack_pause(&out, view(&payload)) == 0, "pause 65");
+    check(out.how == in.how, "pause 65");
 }
 
 static void payload_66(void)
+{
+    static held payload, packed;
+    softrig_ok in, out;
+    in.request = 0u;
+    hex(&payload, "00");
+    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 66");
+    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 66");
+    check(out.request == in.request, "ok 66");
+}
+
+static void payload_67(void)
+{
+    static held payload, packed;
+    softrig_ok in, out;
+    in.request = 255u;
+    hex(&payload, "ff");
+    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 67");
+    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 67");
+    check(out.request == in.request, "ok 67");
+}
+
+static void payload_68(void)
+{
+    static held payload, packed;
+    softrig_ok in, out;
+    in.request = 35u;
+    hex(&payload, "23");
+    check(same(packed.at, softrig_pack_ok(&in, packed.at, HELD_MAX), &payload), "ok 68");
+    check(softrig_unpack_ok(&out, view(&payload)) == 0, "ok 68");
+    check(out.request == in.request, "ok 68");
+}
+
+static void payload_69(void)
 {
     static held payload, packed;
     softrig_refused in, out;
@@ -1206,16 +1245,16 @@ static void payload_66(void)
     in.value = -2147483647 - 1;
     in.limit = -2147483647 - 1;
     hex(&payload, "000000000000008000000080");
-    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 66");
-    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 66");
-    check(out.request == in.request, "refused 66");
-    check(out.code == in.code, "refused 66");
-    check(out.channel == in.channel, "refused 66");
-    check(out.value == in.value, "refused 66");
-    check(out.limit == in.limit, "refused 66");
+    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 69");
+    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 69");
+    check(out.request == in.request, "refused 69");
+    check(out.code == in.code, "refused 69");
+    check(out.channel == in.channel, "refused 69");
+    check(out.value == in.value, "refused 69");
+    check(out.limit == in.limit, "refused 69");
 }
 
-static void payload_67(void)
+static void payload_70(void)
 {
     static held payload, packed;
     softrig_refused in, out;
@@ -1225,16 +1264,16 @@ static void payload_67(void)
     in.value = 2147483647;
     in.limit = 2147483647;
     hex(&payload, "ffffffffffffff7fffffff7f");
-    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 67");
-    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 67");
-    check(out.request == in.request, "refused 67");
-    check(out.code == in.code, "refused 67");
-    check(out.channel == in.channel, "refused 67");
-    check(out.value == in.value, "refused 67");
-    check(out.limit == in.limit, "refused 67");
+    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 70");
+    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 70");
+    check(out.request == in.request, "refused 70");
+    check(out.code == in.code, "refused 70");
+    check(out.channel == in.channel, "refused 70");
+    check(out.value == in.value, "refused 70");
+    check(out.limit == in.limit, "refused 70");
 }
 
-static void payload_68(void)
+static void payload_71(void)
 {
     static held payload, packed;
     softrig_refused in, out;
@@ -1244,16 +1283,16 @@ static void payload_68(void)
     in.value = 1021243410;
     in.limit = -104996828;
     hex(&payload, "2391802412f0de3c24e0bdf9");
-    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 68");
-    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 68");
-    check(out.request == in.request, "refused 68");
-    check(out.code == in.code, "refused 68");
-    check(out.channel == in.channel, "refused 68");
-    check(out.value == in.value, "refused 68");
-    check(out.limit == in.limit, "refused 68");
+    check(same(packed.at, softrig_pack_refused(&in, packed.at, HELD_MAX), &payload), "refused 71");
+    check(softrig_unpack_refused(&out, view(&payload)) == 0, "refused 71");
+    check(out.request == in.request, "refused 71");
+    check(out.code == in.code, "refused 71");
+    check(out.channel == in.channel, "refused 71");
+    check(out.value == in.value, "refused 71");
+    check(out.limit == in.limit, "refused 71");
 }
 
-static void payload_69(void)
+static void payload_72(void)
 {
     static held payload, packed;
     softrig_status in, out;
@@ -1263,6 +1302,7 @@ static void payload_69(void)
     in.uptime_ms = 0u;
     in.lease_ms = 0u;
     in.step = 0u;
+    in.paused = 0u;
     in.coils = 0u;
     in.supply_mv = 0u;
     in.current_ma = 0u;
@@ -1274,29 +1314,30 @@ static void payload_69(void)
     in.forged = 0u;
     in.repeated = 0u;
     in.overruns = 0u;
-    hex(&payload, "0000000000000000000000000000000000000000008000800080000000000000000000");
-    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 69");
-    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 69");
-    check(out.request == in.request, "status 69");
-    check(out.state == in.state, "status 69");
-    check(out.code == in.code, "status 69");
-    check(out.uptime_ms == in.uptime_ms, "status 69");
-    check(out.lease_ms == in.lease_ms, "status 69");
-    check(out.step == in.step, "status 69");
-    check(out.coils == in.coils, "status 69");
-    check(out.supply_mv == in.supply_mv, "status 69");
-    check(out.current_ma == in.current_ma, "status 69");
-    check(out.board_decidegc == in.board_decidegc, "status 69");
-    check(out.roll_decideg == in.roll_decideg, "status 69");
-    check(out.pitch_decideg == in.pitch_decideg, "status 69");
-    check(out.down == in.down, "status 69");
-    check(out.dropped == in.dropped, "status 69");
-    check(out.forged == in.forged, "status 69");
-    check(out.repeated == in.repeated, "status 69");
-    check(out.overruns == in.overruns, "status 69");
+    hex(&payload, "000000000000000000000000000000000000000000008000800080000000000000000000");
+    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 72");
+    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 72");
+    check(out.request == in.request, "status 72");
+    check(out.state == in.state, "status 72");
+    check(out.code == in.code, "status 72");
+    check(out.uptime_ms == in.uptime_ms, "status 72");
+    check(out.lease_ms == in.lease_ms, "status 72");
+    check(out.step == in.step, "status 72");
+    check(out.paused == in.paused, "status 72");
+    check(out.coils == in.coils, "status 72");
+    check(out.supply_mv == in.supply_mv, "status 72");
+    check(out.current_ma == in.current_ma, "status 72");
+    check(out.board_decidegc == in.board_decidegc, "status 72");
+    check(out.roll_decideg == in.roll_decideg, "status 72");
+    check(out.pitch_decideg == in.pitch_decideg, "status 72");
+    check(out.down == in.down, "status 72");
+    check(out.dropped == in.dropped, "status 72");
+    check(out.forged == in.forged, "status 72");
+    check(out.repeated == in.repeated, "status 72");
+    check(out.overruns == in.overruns, "status 72");
 }
 
-static void payload_70(void)
+static void payload_73(void)
 {
     static held payload, packed;
     softrig_status in, out;
@@ -1306,6 +1347,7 @@ static void payload_70(void)
     in.uptime_ms = 4294967295u;
     in.lease_ms = 65535u;
     in.step = 65535u;
+    in.paused = 1u;
     in.coils = 4294967295u;
     in.supply_mv = 65535u;
     in.current_ma = 65535u;
@@ -1317,29 +1359,30 @@ static void payload_70(void)
     in.forged = 65535u;
     in.repeated = 65535u;
     in.overruns = 65535u;
-    hex(&payload, "ffffffffffffffffffffffffffffffffffffffffff7fff7fff7fffffffffffffffffff");
-    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 70");
-    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 70");
-    check(out.request == in.request, "status 70");
-    check(out.state == in.state, "status 70");
-    check(out.code == in.code, "status 70");
-    check(out.uptime_ms == in.uptime_ms, "status 70");
-    check(out.lease_ms == in.lease_ms, "status 70");
-    check(out.step == in.step, "status 70");
-    check(out.coils == in.coils, "status 70");
-    check(out.supply_mv == in.supply_mv, "status 70");
-    check(out.current_ma == in.current_ma, "status 70");
-    check(out.board_decidegc == in.board_decidegc, "status 70");
-    check(out.roll_decideg == in.roll_decideg, "status 70");
-    check(out.pitch_decideg == in.pitch_decideg, "status 70");
-    check(out.down == in.down, "status 70");
-    check(out.dropped == in.dropped, "status 70");
-    check(out.forged == in.forged, "status 70");
-    check(out.repeated == in.repeated, "status 70");
-    check(out.overruns == in.overruns, "status 70");
+    hex(&payload, "ffffffffffffffffffffffff01ffffffffffffffffff7fff7fff7fffffffffffffffffff");
+    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 73");
+    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 73");
+    check(out.request == in.request, "status 73");
+    check(out.state == in.state, "status 73");
+    check(out.code == in.code, "status 73");
+    check(out.uptime_ms == in.uptime_ms, "status 73");
+    check(out.lease_ms == in.lease_ms, "status 73");
+    check(out.step == in.step, "status 73");
+    check(out.paused == in.paused, "status 73");
+    check(out.coils == in.coils, "status 73");
+    check(out.supply_mv == in.supply_mv, "status 73");
+    check(out.current_ma == in.current_ma, "status 73");
+    check(out.board_decidegc == in.board_decidegc, "status 73");
+    check(out.roll_decideg == in.roll_decideg, "status 73");
+    check(out.pitch_decideg == in.pitch_decideg, "status 73");
+    check(out.down == in.down, "status 73");
+    check(out.dropped == in.dropped, "status 73");
+    check(out.forged == in.forged, "status 73");
+    check(out.repeated == in.repeated, "status 73");
+    check(out.overruns == in.overruns, "status 73");
 }
 
-static void payload_71(void)
+static void payload_74(void)
 {
     static held payload, packed;
     softrig_status in, out;
@@ -1349,40 +1392,42 @@ static void payload_71(void)
     in.uptime_ms = 3168727058u;
     in.lease_ms = 57380u;
     in.step = 291u;
-    in.coils = 4084973640u;
-    in.supply_mv = 32913u;
-    in.current_ma = 57380u;
-    in.board_decidegc = -32477;
-    in.roll_decideg = 16456;
-    in.pitch_decideg = 28690;
-    in.down = 145u;
-    in.dropped = 49224u;
-    in.forged = 61458u;
-    in.repeated = 32913u;
-    in.overruns = 57380u;
-    hex(&payload, "239148c012f0debc24e0230148c07bf3918024e02381484012709148c012f0918024e0");
-    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 71");
-    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 71");
-    check(out.request == in.request, "status 71");
-    check(out.state == in.state, "status 71");
-    check(out.code == in.code, "status 71");
-    check(out.uptime_ms == in.uptime_ms, "status 71");
-    check(out.lease_ms == in.lease_ms, "status 71");
-    check(out.step == in.step, "status 71");
-    check(out.coils == in.coils, "status 71");
-    check(out.supply_mv == in.supply_mv, "status 71");
-    check(out.current_ma == in.current_ma, "status 71");
-    check(out.board_decidegc == in.board_decidegc, "status 71");
-    check(out.roll_decideg == in.roll_decideg, "status 71");
-    check(out.pitch_decideg == in.pitch_decideg, "status 71");
-    check(out.down == in.down, "status 71");
-    check(out.dropped == in.dropped, "status 71");
-    check(out.forged == in.forged, "status 71");
-    check(out.repeated == in.repeated, "status 71");
-    check(out.overruns == in.overruns, "status 71");
+    in.paused = 0u;
+    in.coils = 2042486820u;
+    in.supply_mv = 49224u;
+    in.current_ma = 61458u;
+    in.board_decidegc = 145;
+    in.roll_decideg = 24612;
+    in.pitch_decideg = -32477;
+    in.down = 72u;
+    in.dropped = 57380u;
+    in.forged = 291u;
+    in.repeated = 49224u;
+    in.overruns = 61458u;
+    hex(&payload, "239148c012f0debc24e023010024e0bd7948c012f09100246023814824e0230148c012f0");
+    check(same(packed.at, softrig_pack_status(&in, packed.at, HELD_MAX), &payload), "status 74");
+    check(softrig_unpack_status(&out, view(&payload)) == 0, "status 74");
+    check(out.request == in.request, "status 74");
+    check(out.state == in.state, "status 74");
+    check(out.code == in.code, "status 74");
+    check(out.uptime_ms == in.uptime_ms, "status 74");
+    check(out.lease_ms == in.lease_ms, "status 74");
+    check(out.step == in.step, "status 74");
+    check(out.paused == in.paused, "status 74");
+    check(out.coils == in.coils, "status 74");
+    check(out.supply_mv == in.supply_mv, "status 74");
+    check(out.current_ma == in.current_ma, "status 74");
+    check(out.board_decidegc == in.board_decidegc, "status 74");
+    check(out.roll_decideg == in.roll_decideg, "status 74");
+    check(out.pitch_decideg == in.pitch_decideg, "status 74");
+    check(out.down == in.down, "status 74");
+    check(out.dropped == in.dropped, "status 74");
+    check(out.forged == in.forged, "status 74");
+    check(out.repeated == in.repeated, "status 74");
+    check(out.overruns == in.overruns, "status 74");
 }
 
-static void payload_72(void)
+static void payload_75(void)
 {
     static held bytes, payload, packed;
     softrig_faults in, out;
@@ -1391,15 +1436,15 @@ static void payload_72(void)
     in.count = 0u;
     in.records = view(hex(&bytes, ""));
     hex(&payload, "000000000000");
-    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 72");
-    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 72");
-    check(out.request == in.request, "faults 72");
-    check(out.start == in.start, "faults 72");
-    check(out.count == in.count, "faults 72");
-    check(same_view(out.records, &bytes), "faults 72");
+    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 75");
+    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 75");
+    check(out.request == in.request, "faults 75");
+    check(out.start == in.start, "faults 75");
+    check(out.count == in.count, "faults 75");
+    check(same_view(out.records, &bytes), "faults 75");
 }
 
-static void payload_73(void)
+static void payload_76(void)
 {
     static held bytes, payload, packed;
     softrig_faults in, out;
@@ -1408,15 +1453,15 @@ static void payload_73(void)
     in.count = 255u;
     in.records = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 73");
-    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 73");
-    check(out.request == in.request, "faults 73");
-    check(out.start == in.start, "faults 73");
-    check(out.count == in.count, "faults 73");
-    check(same_view(out.records, &bytes), "faults 73");
+    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 76");
+    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 76");
+    check(out.request == in.request, "faults 76");
+    check(out.start == in.start, "faults 76");
+    check(out.count == in.count, "faults 76");
+    check(same_view(out.records, &bytes), "faults 76");
 }
 
-static void payload_74(void)
+static void payload_77(void)
 {
     static held bytes, payload, packed;
     softrig_faults in, out;
@@ -1425,15 +1470,15 @@ static void payload_74(void)
     in.count = 35u;
     in.records = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "239180f7e62300017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 74");
-    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 74");
-    check(out.request == in.request, "faults 74");
-    check(out.start == in.start, "faults 74");
-    check(out.count == in.count, "faults 74");
-    check(same_view(out.records, &bytes), "faults 74");
+    check(same(packed.at, softrig_pack_faults(&in, packed.at, HELD_MAX), &payload), "faults 77");
+    check(softrig_unpack_faults(&out, view(&payload)) == 0, "faults 77");
+    check(out.request == in.request, "faults 77");
+    check(out.start == in.start, "faults 77");
+    check(out.count == in.count, "faults 77");
+    check(same_view(out.records, &bytes), "faults 77");
 }
 
-static void payload_75(void)
+static void payload_78(void)
 {
     static held bytes, payload, packed;
     softrig_settings in, out;
@@ -1443,16 +1488,16 @@ static void payload_75(void)
     in.board_offset_decidegc = -32768;
     in.resistances = view(hex(&bytes, ""));
     hex(&payload, "0000000080");
-    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 75");
-    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 75");
-    check(out.request == in.request, "settings 75");
-    check(out.source == in.source, "settings 75");
-    check(out.node == in.node, "settings 75");
-    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 75");
-    check(same_view(out.resistances, &bytes), "settings 75");
+    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 78");
+    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 78");
+    check(out.request == in.request, "settings 78");
+    check(out.source == in.source, "settings 78");
+    check(out.node == in.node, "settings 78");
+    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 78");
+    check(same_view(out.resistances, &bytes), "settings 78");
 }
 
-static void payload_76(void)
+static void payload_79(void)
 {
     static held bytes, payload, packed;
     softrig_settings in, out;
@@ -1462,16 +1507,16 @@ static void payload_76(void)
     in.board_offset_decidegc = 32767;
     in.resistances = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "ffffffff7fffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 76");
-    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 76");
-    check(out.request == in.request, "settings 76");
-    check(out.source == in.source, "settings 76");
-    check(out.node == in.node, "settings 76");
-    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 76");
-    check(same_view(out.resistances, &bytes), "settings 76");
+    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 79");
+    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 79");
+    check(out.request == in.request, "settings 79");
+    check(out.source == in.source, "settings 79");
+    check(out.node == in.node, "settings 79");
+    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 79");
+    check(same_view(out.resistances, &bytes), "settings 79");
 }
 
-static void payload_77(void)
+static void payload_80(void)
 {
     static held bytes, payload, packed;
     softrig_settings in, out;
@@ -1481,55 +1526,55 @@ static void payload_77(void)
     in.board_offset_decidegc = 24612;
     in.resistances = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "239148246000017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 77");
-    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 77");
-    check(out.request == in.request, "settings 77");
-    check(out.source == in.source, "settings 77");
-    check(out.node == in.node, "settings 77");
-    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 77");
-    check(same_view(out.resistances, &bytes), "settings 77");
+    check(same(packed.at, softrig_pack_settings(&in, packed.at, HELD_MAX), &payload), "settings 80");
+    check(softrig_unpack_settings(&out, view(&payload)) == 0, "settings 80");
+    check(out.request == in.request, "settings 80");
+    check(out.source == in.source, "settings 80");
+    check(out.node == in.node, "settings 80");
+    check(out.board_offset_decidegc == in.board_offset_decidegc, "settings 80");
+    check(same_view(out.resistances, &bytes), "settings 80");
 }
 
-static void payload_78(void)
+static void payload_81(void)
 {
     static held bytes, payload, packed;
     softrig_coils in, out;
     in.request = 0u;
     in.channels = view(hex(&bytes, ""));
     hex(&payload, "00");
-    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 78");
-    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 78");
-    check(out.request == in.request, "coils 78");
-    check(same_view(out.channels, &bytes), "coils 78");
+    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 81");
+    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 81");
+    check(out.request == in.request, "coils 81");
+    check(same_view(out.channels, &bytes), "coils 81");
 }
 
-static void payload_79(void)
+static void payload_82(void)
 {
     static held bytes, payload, packed;
     softrig_coils in, out;
     in.request = 255u;
     in.channels = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 79");
-    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 79");
-    check(out.request == in.request, "coils 79");
-    check(same_view(out.channels, &bytes), "coils 79");
+    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 82");
+    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 82");
+    check(out.request == in.request, "coils 82");
+    check(same_view(out.channels, &bytes), "coils 82");
 }
 
-static void payload_80(void)
+static void payload_83(void)
 {
     static held bytes, payload, packed;
     softrig_coils in, out;
     in.request = 35u;
     in.channels = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "2300017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 80");
-    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 80");
-    check(out.request == in.request, "coils 80");
-    check(same_view(out.channels, &bytes), "coils 80");
+    check(same(packed.at, softrig_pack_coils(&in, packed.at, HELD_MAX), &payload), "coils 83");
+    check(softrig_unpack_coils(&out, view(&payload)) == 0, "coils 83");
+    check(out.request == in.request, "coils 83");
+    check(same_view(out.channels, &bytes), "coils 83");
 }
 
-static void payload_81(void)
+static void payload_84(void)
 {
     static held payload, packed;
     softrig_event in, out;
@@ -1540,17 +1585,17 @@ static void payload_81(void)
     in.value = -2147483647 - 1;
     in.now_ms = 0u;
     hex(&payload, "0000000000000000008000000000");
-    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 81");
-    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 81");
-    check(out.event == in.event, "event 81");
-    check(out.code == in.code, "event 81");
-    check(out.step == in.step, "event 81");
-    check(out.channel == in.channel, "event 81");
-    check(out.value == in.value, "event 81");
-    check(out.now_ms == in.now_ms, "event 81");
+    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 84");
+    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 84");
+    check(out.event == in.event, "event 84");
+    check(out.code == in.code, "event 84");
+    check(out.step == in.step, "event 84");
+    check(out.channel == in.channel, "event 84");
+    check(out.value == in.value, "event 84");
+    check(out.now_ms == in.now_ms, "event 84");
 }
 
-static void payload_82(void)
+static void payload_85(void)
 {
     static held payload, packed;
     softrig_event in, out;
@@ -1561,17 +1606,17 @@ static void payload_82(void)
     in.value = 2147483647;
     in.now_ms = 4294967295u;
     hex(&payload, "ffffffffffffffffff7fffffffff");
-    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 82");
-    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 82");
-    check(out.event == in.event, "event 82");
-    check(out.code == in.code, "event 82");
-    check(out.step == in.step, "event 82");
-    check(out.channel == in.channel, "event 82");
-    check(out.value == in.value, "event 82");
-    check(out.now_ms == in.now_ms, "event 82");
+    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 85");
+    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 85");
+    check(out.event == in.event, "event 85");
+    check(out.code == in.code, "event 85");
+    check(out.step == in.step, "event 85");
+    check(out.channel == in.channel, "event 85");
+    check(out.value == in.value, "event 85");
+    check(out.now_ms == in.now_ms, "event 85");
 }
 
-static void payload_83(void)
+static void payload_86(void)
 {
     static held payload, packed;
     softrig_event in, out;
@@ -1582,17 +1627,17 @@ static void payload_83(void)
     in.value = 1727496337;
     in.now_ms = 3454992675u;
     hex(&payload, "23918024e0239180f7662301efcd");
-    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 83");
-    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 83");
-    check(out.event == in.event, "event 83");
-    check(out.code == in.code, "event 83");
-    check(out.step == in.step, "event 83");
-    check(out.channel == in.channel, "event 83");
-    check(out.value == in.value, "event 83");
-    check(out.now_ms == in.now_ms, "event 83");
+    check(same(packed.at, softrig_pack_event(&in, packed.at, HELD_MAX), &payload), "event 86");
+    check(softrig_unpack_event(&out, view(&payload)) == 0, "event 86");
+    check(out.event == in.event, "event 86");
+    check(out.code == in.code, "event 86");
+    check(out.step == in.step, "event 86");
+    check(out.channel == in.channel, "event 86");
+    check(out.value == in.value, "event 86");
+    check(out.now_ms == in.now_ms, "event 86");
 }
 
-static void payload_84(void)
+static void payload_87(void)
 {
     static held bytes, payload, packed;
     softrig_telemetry in, out;
@@ -1602,16 +1647,16 @@ static void payload_84(void)
     in.now_ms = 0u;
     in.values = view(hex(&bytes, ""));
     hex(&payload, "00000000000000");
-    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 84");
-    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 84");
-    check(out.slot == in.slot, "telemetry 84");
-    check(out.form == in.form, "telemetry 84");
-    check(out.count == in.count, "telemetry 84");
-    check(out.now_ms == in.now_ms, "telemetry 84");
-    check(same_view(out.values, &bytes), "telemetry 84");
+    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 87");
+    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 87");
+    check(out.slot == in.slot, "telemetry 87");
+    check(out.form == in.form, "telemetry 87");
+    check(out.count == in.count, "telemetry 87");
+    check(out.now_ms == in.now_ms, "telemetry 87");
+    check(same_view(out.values, &bytes), "telemetry 87");
 }
 
-static void payload_85(void)
+static void payload_88(void)
 {
     static held bytes, payload, packed;
     softrig_telemetry in, out;
@@ -1621,16 +1666,16 @@ static void payload_85(void)
     in.now_ms = 4294967295u;
     in.values = view(hex(&bytes, "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"));
     hex(&payload, "04ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 85");
-    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 85");
-    check(out.slot == in.slot, "telemetry 85");
-    check(out.form == in.form, "telemetry 85");
-    check(out.count == in.count, "telemetry 85");
-    check(out.now_ms == in.now_ms, "telemetry 85");
-    check(same_view(out.values, &bytes), "telemetry 85");
+    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 88");
+    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 88");
+    check(out.slot == in.slot, "telemetry 88");
+    check(out.form == in.form, "telemetry 88");
+    check(out.count == in.count, "telemetry 88");
+    check(out.now_ms == in.now_ms, "telemetry 88");
+    check(same_view(out.values, &bytes), "telemetry 88");
 }
 
-static void payload_86(void)
+static void payload_89(void)
 {
     static held bytes, payload, packed;
     softrig_telemetry in, out;
@@ -1640,16 +1685,16 @@ static void payload_86(void)
     in.now_ms = 2042486820u;
     in.values = view(hex(&bytes, "00017f80ff0053544f5000"));
     hex(&payload, "00914824e0bd7900017f80ff0053544f5000");
-    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 86");
-    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 86");
-    check(out.slot == in.slot, "telemetry 86");
-    check(out.form == in.form, "telemetry 86");
-    check(out.count == in.count, "telemetry 86");
-    check(out.now_ms == in.now_ms, "telemetry 86");
-    check(same_view(out.values, &bytes), "telemetry 86");
+    check(same(packed.at, softrig_pack_telemetry(&in, packed.at, HELD_MAX), &payload), "telemetry 89");
+    check(softrig_unpack_telemetry(&out, view(&payload)) == 0, "telemetry 89");
+    check(out.slot == in.slot, "telemetry 89");
+    check(out.form == in.form, "telemetry 89");
+    check(out.count == in.count, "telemetry 89");
+    check(out.now_ms == in.now_ms, "telemetry 89");
+    check(same_view(out.values, &bytes), "telemetry 89");
 }
 
-static void payload_87(void)
+static void payload_90(void)
 {
     static held payload, packed;
     softrig_beacon in, out;
@@ -1659,16 +1704,16 @@ static void payload_87(void)
     in.supply_mv = 0u;
     in.current_ma = 0u;
     hex(&payload, "0000000000000000");
-    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 87");
-    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 87");
-    check(out.state == in.state, "beacon 87");
-    check(out.code == in.code, "beacon 87");
-    check(out.step == in.step, "beacon 87");
-    check(out.supply_mv == in.supply_mv, "beacon 87");
-    check(out.current_ma == in.current_ma, "beacon 87");
+    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 90");
+    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 90");
+    check(out.state == in.state, "beacon 90");
+    check(out.code == in.code, "beacon 90");
+    check(out.step == in.step, "beacon 90");
+    check(out.supply_mv == in.supply_mv, "beacon 90");
+    check(out.current_ma == in.current_ma, "beacon 90");
 }
 
-static void payload_88(void)
+static void payload_91(void)
 {
     static held payload, packed;
     softrig_beacon in, out;
@@ -1678,16 +1723,16 @@ static void payload_88(void)
     in.supply_mv = 65535u;
     in.current_ma = 65535u;
     hex(&payload, "ffffffffffffffff");
-    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 88");
-    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 88");
-    check(out.state == in.state, "beacon 88");
-    check(out.code == in.code, "beacon 88");
-    check(out.step == in.step, "beacon 88");
-    check(out.supply_mv == in.supply_mv, "beacon 88");
-    check(out.current_ma == in.current_ma, "beacon 88");
+    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 91");
+    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 91");
+    check(out.state == in.state, "beacon 91");
+    check(out.code == in.code, "beacon 91");
+    check(out.step == in.step, "beacon 91");
+    check(out.supply_mv == in.supply_mv, "beacon 91");
+    check(out.current_ma == in.current_ma, "beacon 91");
 }
 
-static void payload_89(void)
+static void payload_92(void)
 {
     static held payload, packed;
     softrig_beacon in, out;
@@ -1697,16 +1742,16 @@ static void payload_89(void)
     in.supply_mv = 61458u;
     in.current_ma = 32913u;
     hex(&payload, "239148c012f09180");
-    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 89");
-    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 89");
-    check(out.state == in.state, "beacon 89");
-    check(out.code == in.code, "beacon 89");
-    check(out.step == in.step, "beacon 89");
-    check(out.supply_mv == in.supply_mv, "beacon 89");
-    check(out.current_ma == in.current_ma, "beacon 89");
+    check(same(packed.at, softrig_pack_beacon(&in, packed.at, HELD_MAX), &payload), "beacon 92");
+    check(softrig_unpack_beacon(&out, view(&payload)) == 0, "beacon 92");
+    check(out.state == in.state, "beacon 92");
+    check(out.code == in.code, "beacon 92");
+    check(out.step == in.step, "beacon 92");
+    check(out.supply_mv == in.supply_mv, "beacon 92");
+    check(out.current_ma == in.current_ma, "beacon 92");
 }
 
-static void payload_90(void)
+static void payload_93(void)
 {
     static held payload, packed;
     softrig_beacon_coils in, out;
@@ -1716,16 +1761,16 @@ static void payload_90(void)
     in.temperature_a_decidegc = -32768;
     in.temperature_b_decidegc = -32768;
     hex(&payload, "00000000800080");
-    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 90");
-    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 90");
-    check(out.group == in.group, "beacon_coils 90");
-    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 90");
-    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 90");
-    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 90");
-    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 90");
+    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 93");
+    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 93");
+    check(out.group == in.group, "beacon_coils 93");
+    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 93");
+    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 93");
+    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 93");
+    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 93");
 }
 
-static void payload_91(void)
+static void payload_94(void)
 {
     static held payload, packed;
     softrig_beacon_coils in, out;
@@ -1735,16 +1780,16 @@ static void payload_91(void)
     in.temperature_a_decidegc = 32767;
     in.temperature_b_decidegc = 32767;
     hex(&payload, "0f6464ff7fff7f");
-    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 91");
-    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 91");
-    check(out.group == in.group, "beacon_coils 91");
-    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 91");
-    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 91");
-    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 91");
-    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 91");
+    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 94");
+    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 94");
+    check(out.group == in.group, "beacon_coils 94");
+    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 94");
+    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 94");
+    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 94");
+    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 94");
 }
 
-static void payload_92(void)
+static void payload_95(void)
 {
     static held payload, packed;
     softrig_beacon_coils in, out;
@@ -1754,16 +1799,16 @@ static void payload_92(void)
     in.temperature_a_decidegc = 24612;
     in.temperature_b_decidegc = -32477;
     hex(&payload, "031e4124602381");
-    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 92");
-    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 92");
-    check(out.group == in.group, "beacon_coils 92");
-    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 92");
-    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 92");
-    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 92");
-    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 92");
+    check(same(packed.at, softrig_pack_beacon_coils(&in, packed.at, HELD_MAX), &payload), "beacon_coils 95");
+    check(softrig_unpack_beacon_coils(&out, view(&payload)) == 0, "beacon_coils 95");
+    check(out.group == in.group, "beacon_coils 95");
+    check(out.duty_a_percent == in.duty_a_percent, "beacon_coils 95");
+    check(out.duty_b_percent == in.duty_b_percent, "beacon_coils 95");
+    check(out.temperature_a_decidegc == in.temperature_a_decidegc, "beacon_coils 95");
+    check(out.temperature_b_decidegc == in.temperature_b_decidegc, "beacon_coils 95");
 }
 
-static void payload_93(void)
+static void payload_96(void)
 {
     static held payload, packed;
     softrig_clock in, out;
@@ -1771,14 +1816,14 @@ static void payload_93(void)
     in.received_ms = 0u;
     in.sent_ms = 0u;
     hex(&payload, "000000000000000000000000");
-    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 93");
-    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 93");
-    check(out.host_us == in.host_us, "clock 93");
-    check(out.received_ms == in.received_ms, "clock 93");
-    check(out.sent_ms == in.sent_ms, "clock 93");
+    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 96");
+    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 96");
+    check(out.host_us == in.host_us, "clock 96");
+    check(out.received_ms == in.received_ms, "clock 96");
+    check(out.sent_ms == in.sent_ms, "clock 96");
 }
 
-static void payload_94(void)
+static void payload_97(void)
 {
     static held payload, packed;
     softrig_clock in, out;
@@ -1786,14 +1831,14 @@ static void payload_94(void)
     in.received_ms = 4294967295u;
     in.sent_ms = 4294967295u;
     hex(&payload, "ffffffffffffffffffffffff");
-    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 94");
-    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 94");
-    check(out.host_us == in.host_us, "clock 94");
-    check(out.received_ms == in.received_ms, "clock 94");
-    check(out.sent_ms == in.sent_ms, "clock 94");
+    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 97");
+    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 97");
+    check(out.host_us == in.host_us, "clock 97");
+    check(out.received_ms == in.received_ms, "clock 97");
+    check(out.sent_ms == in.sent_ms, "clock 97");
 }
 
-static void payload_95(void)
+static void payload_98(void)
 {
     static held payload, packed;
     softrig_clock in, out;
@@ -1801,11 +1846,11 @@ static void payload_95(void)
     in.received_ms = 3168727058u;
     in.sent_ms = 2042486820u;
     hex(&payload, "2301efcd12f0debc24e0bd79");
-    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 95");
-    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 95");
-    check(out.host_us == in.host_us, "clock 95");
-    check(out.received_ms == in.received_ms, "clock 95");
-    check(out.sent_ms == in.sent_ms, "clock 95");
+    check(same(packed.at, softrig_pack_clock(&in, packed.at, HELD_MAX), &payload), "clock 98");
+    check(softrig_unpack_clock(&out, view(&payload)) == 0, "clock 98");
+    check(out.host_us == in.host_us, "clock 98");
+    check(out.received_ms == in.received_ms, "clock 98");
+    check(out.sent_ms == in.sent_ms, "clock 98");
 }
 
 int main(void)
@@ -1906,6 +1951,9 @@ int main(void)
     payload_93();
     payload_94();
     payload_95();
+    payload_96();
+    payload_97();
+    payload_98();
     { static const whole told = {0, 1, 0, 0, 0, 0u, 0u, 0, "", "239180f7e62301efcd12f0debc24e0bd79", "20010000239180f7e62301efcd12f0debc24e0bd7992d7a9ee", "0320010116239180f7e62301efcd12f0debc24e0bd7992d7a9ee00"}; frame(&told, "hello"); }
     { static const whole told = {0, 2, 0, 0, 0, 0u, 0u, 1, "", "2301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000", "200200002301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f500032ae7a7c", "03200201352301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7905017f80ff0553544f500532ae7a7c00"}; frame(&told, "identity"); }
     { static const whole told = {2, 2, 0, 0, 9, 0u, 0u, 1, "", "2301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000", "22020000092301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7900017f80ff0053544f5000435cac63", "0322020136092301efcd12f0debc24e0bd7948c07bf3918024122391480f12f09180f7e62301efcd12f09180f7e62301efcd12f0debc24e0bd7905017f80ff0553544f5005435cac6300"}; frame(&told, "identity"); }
