@@ -170,13 +170,28 @@ class Orders:
                 if progress:
                     progress(at + len(piece))
 
-    def start(self, at_ms: int = messages.AT_ONCE) -> None:
-        """Run the program that was uploaded: at once, or when the robot's clock shows `at_ms`."""
-        self.talk.order(messages.START, paused=0, at_ms=at_ms)
+    def start(self, at_ms: int = messages.AT_ONCE, paused: bool = False) -> None:
+        """Run the program that was uploaded: at once, or when the robot's clock shows `at_ms`.
+
+        One that begins `paused` stands still before its first step.
+        """
+        self.talk.order(messages.START, at_ms=at_ms, paused=int(paused))
 
     def ready(self) -> None:
         """Have the program that was uploaded wait for the next `sync`."""
-        self.talk.order(messages.START, paused=0, at_ms=messages.AT_SYNC)
+        self.start(messages.AT_SYNC)
+
+    def pause(self) -> None:
+        """Stop the clock of the running program: nothing new begins, what is on its way ends by itself."""
+        self.talk.order(messages.PAUSE, how=messages.PAUSE_NOW)
+
+    def resume(self) -> None:
+        """Let a paused program go on."""
+        self.talk.order(messages.PAUSE, how=messages.RESUME)
+
+    def step(self) -> None:
+        """Let a paused program go on up to its next step."""
+        self.talk.order(messages.PAUSE, how=messages.ONE_STEP)
 
     def service(self) -> None:
         """Have the robot end its program and open its console, once; refused unless it is at rest."""

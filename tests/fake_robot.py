@@ -226,8 +226,8 @@ class FakeRobot:
     def _status(self, seq: int, now_ms: int) -> None:
         self._send(
             messages.STATUS, now_ms, request=seq, state=self.state, code=0, uptime_ms=self.uptime_ms, lease_ms=0,
-            step=0, paused=int(self.paused), coils=self._driven(), supply_mv=self.supply_mv, current_ma=12, board_decidegc=231, dropped=0,
-            forged=0, repeated=0, overruns=0, **self.attitude,
+            step=0, paused=int(self.paused), coils=self._driven(), supply_mv=self.supply_mv, current_ma=12,
+            board_decidegc=231, dropped=0, forged=0, repeated=0, overruns=0, **self.attitude,
         )  # fmt: skip
 
     def _stopped(self, now_ms: int) -> None:
