@@ -157,7 +157,8 @@ def _check_program(compiled: Compiled, problems: Problems) -> None:
     size, most = len(compiled.code), compiled.profile.program.bytes_max
     if size > most:
         place = Place(compiled.script.main.name, 1, 1, 2)
-        problems.add(place, "E307", f"{size} bytes of program, at most {most}", "`softrig run --stream` sends it in pieces")
+        help = "`softrig run --stream` sends it in pieces"
+        problems.add(place, "E307", f"{size} bytes of program, at most {most}", help)
     guards = [op for op in compiled.plan if isinstance(op, Guard)]
     for op in guards[program.GUARDS_MAX :]:
         problems.add(op.node.place, "E309", f"{len(guards)} guards, at most {program.GUARDS_MAX}")
