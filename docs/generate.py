@@ -16,6 +16,7 @@ from docs import cheader, cvectors, dbc, dictionary, faultspage, hardwarepage, p
 from host import errors
 from host.cli import main as softrig
 from host.cli.explain import JOINTS
+from host.gait import treejson
 from host.gait.errors import ROWS
 from protocol import causes
 
@@ -63,6 +64,7 @@ def pages() -> Iterator[tuple[str, str]]:
     yield "docs/limits.md", MADE + limits_page()
     yield "docs/commands.md", MADE + commands_page()
     yield "docs/hardware.md", MADE + hardware_page()
+    yield "docs/gait.schema.json", json.dumps(treejson.schema(), indent=2) + "\n"
     yield "docs/schematic.svg", schematic.svg()
 
 

@@ -37,6 +37,8 @@ COMMANDS = {
     "settings": "List or change what a robot keeps of itself.",
     "calibrate": "Measure and keep the resistance of every coil.",
     "check": "Prove a script against the limits of its robot.",
+    "fmt": "Bring scripts into their one form.",
+    "gait": "Scripts as JSON: export, import, schema.",
     "run": "Check a script, run it, watch and report.",
     "key": "Make pairing keys.",
     "attach": "Take over the program that runs: watch it to its end, or stop it.",

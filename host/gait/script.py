@@ -75,7 +75,11 @@ def loads(text: str, name: str = "script.gait", read: Read | None = None) -> Scr
 def read_text(path: str) -> str:
     """Return the text of a file, or raise OSError or ValueError; a device that never ends is too large."""
     with Path(path).open("rb") as file:
-        data = file.read(BYTES_MAX + 1)
+        return as_text(file.read(BYTES_MAX + 1))
+
+
+def as_text(data: bytes) -> str:
+    """Return the text of a file that holds these bytes, or raise OSError or ValueError."""
     if len(data) > BYTES_MAX:
         raise OSError(errno.EFBIG, f"it is larger than {BYTES_MAX} bytes")
     return data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")

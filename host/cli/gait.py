@@ -1,0 +1,74 @@
+"""`softrig gait`: the tree of a script as JSON, and back."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import click
+
+from host.cli.fmt import source
+from host.cli.options import json_option
+from host.cli.output import emit, json_line, writing
+from host.errors import BadRequest
+from host.gait.diagnostics import GaitError
+from host.gait.formatting import made, replace_file
+from host.gait.layout import layout
+from host.gait.parser import parse_file
+from host.gait.treejson import as_json as in_json
+from host.gait.treejson import reads, schema
+
+output_option = click.option("-o", "--output", type=click.Path(), metavar="FILE", help="Instead of stdout.")
+
+
+@click.group("gait")
+def command() -> None:
+    """Exchange scripts with other programs: the tree of a script as JSON, with a published JSON Schema."""
+
+
+@command.command("export")
+@click.argument("script", type=click.Path())
+@output_option
+@json_option
+def export(script: str, output: str | None, as_json: bool) -> None:
+    """Write the tree of a script as JSON, with its comments; --json puts it on one line.
+
+    What the script includes is not looked at; `-` is a script on stdin.
+    """
+    file, found = parse_file(source(script)[0], script)
+    if found:
+        raise GaitError(found)
+    tree = in_json(layout(file))
+    _put(f"{json_line(tree)}\n" if as_json else f"{json.dumps(tree, indent=2, ensure_ascii=False)}\n", output)
+
+
+@command.command("import")
+@click.argument("file", type=click.Path())
+@output_option
+@json_option
+def import_(file: str, output: str | None, as_json: bool) -> None:
+    """Write the script whose tree is in a JSON file; what is wrong there is told with its path."""
+    try:
+        text = made(reads(source(file)[0]), output or "script.gait")
+    except BadRequest as error:
+        raise BadRequest(f"{file}: {error}") from None
+    if as_json:
+        emit(True, {"script": output, "text": text}, ())
+    if output is not None or not as_json:
+        _put(text, output)
+
+
+@command.command("schema")
+@output_option
+def schema_(output: str | None) -> None:
+    """Write the JSON Schema of these trees."""
+    _put(f"{json.dumps(schema(), indent=2)}\n", output)
+
+
+def _put(text: str, output: str | None) -> None:
+    """Write a text to a file at once, or to stdout."""
+    if output is None:
+        click.echo(text, nl=False)
+        return
+    with writing(Path(output)):
+        replace_file(Path(output), text)
