@@ -84,7 +84,7 @@ def ended(state: CoilState, width: Array, limit: Array, keep: Array, asked: Arra
             met = state.T[i] > asked[DEGC] if asked[ABOVE] > 0.0 else state.T[i] < asked[DEGC]
             if met != (asked[ALL] > 0.0):
                 holds = met
-    return wanted and holds
+    return bool(wanted and holds)
 
 
 @kernel
@@ -117,4 +117,4 @@ def longest(coils: Coils, state: CoilState, P: Array) -> int:
 @kernel
 def turning(xi: float, start: float, end: float) -> float:
     """Return the temperature, reduced by the stress shift, at which the ramp from `start` to `end` is at xi [degC]."""
-    return start + (end - start) * np.arccos(2.0 * xi - 1.0) / np.pi
+    return float(start + (end - start) * np.arccos(2.0 * xi - 1.0) / np.pi)
