@@ -49,10 +49,10 @@ class Thermals:
     """The coils of one robot, cold at first, and `spare` ones that can stand for any of them."""
 
     def __init__(self, robot: RobotFile, seed: int = 1, spare: int = 0) -> None:
-        body = plant_of(robot, seed, "still")
+        body = plant_of(robot, seed)
         if not isinstance(body, CoilBody) or robot.coil is None:
             raise LookupError(f"{robot.name} has no coils")
-        prepare(heat, coil.advance)
+        prepare(heat)
         self.labels = tuple(robot.labels)
         count = len(robot.labels) + spare
         lengths = np.concatenate([body.lengths, np.full(spare, body.lengths[0])])
