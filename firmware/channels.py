@@ -46,7 +46,7 @@ class Channels:
         self._written = array("H", [0] * count)
         self._is_written = True  # no output differs from its order
         self._end_ms = array("i", [0] * count)
-        self._cutoff_decidegc = array("H", [0] * count)
+        self._cutoff_decidegc = array("i", [0] * count)  # below 0: the coil is kept near so much
         self._ramp_ms = array("H", [0] * count)
         self._begin_ms = array("i", [0] * count)
         self._since_ms = array("i", [0] * count)
@@ -64,7 +64,9 @@ class Channels:
             if mask >> channel & 1:
                 self._order(channel, duty_permille, now_ms)
                 self._end_ms[channel] = now_ms + hold_ms
-                self._cutoff_decidegc[channel] = cutoff_decidegc
+                self._cutoff_decidegc[channel] = (
+                    cutoff_decidegc if cutoff_decidegc < program.KEEP else program.KEEP - cutoff_decidegc
+                )
                 self._ramp_ms[channel] = ramp_ms
 
     def off(self, mask: int, now_ms: int) -> None:
@@ -85,13 +87,13 @@ class Channels:
                 cutoff = self._cutoff_decidegc[channel]
                 if now_ms - self._end_ms[channel] >= 0:
                     self._end(channel, now_ms)
-                elif 0 < cutoff < program.KEEP and temperature_millidegc[channel] >= cutoff * 100:
+                elif cutoff > 0 and temperature_millidegc[channel] >= cutoff * 100:
                     self._end(channel, now_ms)
                     self.cut_off_mask |= 1 << channel
                 elif now_ms - self._since_ms[channel] > self._on_max_ms:
                     return channel
-                elif cutoff >= program.KEEP:
-                    self._keep(channel, temperature_millidegc[channel] < (cutoff - program.KEEP) * 100)
+                elif cutoff < 0:
+                    self._keep(channel, temperature_millidegc[channel] < -100 * cutoff)
                 elif self._ramp_ms[channel]:
                     self._ramp(channel, now_ms)
             mask >>= 1

@@ -47,10 +47,8 @@ class Commands:
         """Answer an order whose self-test is done, go on verifying a program that waits to be started."""
         if self._arming >= 0 and self._core.control.selftest.done:
             self._tested()
-        if self.upload.request >= 0:
-            self._verify(self.upload.request)
-        elif self.upload.streamed and self._core.state == messages.RUNNING:
-            self._verify_more()
+        if self.upload.waits:
+            self._verify_some()
         if self._begins >= 0 and self._core.now_ms - self._begins >= 0:
             self._begin()
 
@@ -110,10 +108,19 @@ class Commands:
             self._begins = self._at
         self.upload.request = -1
 
+    def _verify_some(self) -> None:
+        """Verify what has come: for the start that asked for it, or for the streamed program that runs."""
+        if self.upload.request >= 0:
+            self._verify(self.upload.request)
+        else:
+            self.upload.waits = False
+            if self._core.state == messages.RUNNING:
+                self._verify_more()
+
     def _verify_more(self) -> None:
         """Let the running program have what has come of it since; one that nobody may run is aborted."""
         try:
-            self.upload.go_on()
+            self.upload.waits = not self.upload.go_on()
             self._sees()
         except Refused as refused:
             self._core.end_program(messages.ABORTED, refused.code, refused.value)
@@ -237,7 +244,7 @@ class Commands:
         core = self._core
         self.answer(
             messages.STATUS, request=seq, state=core.state, code=core.code, uptime_ms=core.now_ms & 0xFFFFFFFF,
-            lease_ms=core.lease_left_ms(), step=core.player.step, paused=self._is_paused(),
+            lease_ms=core.lease_left_ms(), step=core.player.step, paused=int(core.player.paused),
             coils=core.control.driven_mask(), supply_mv=core.sense.supply_mv, current_ma=core.sense.current_ma,
             board_decidegc=core.sense.board_decidegc, roll_decideg=core.attitude.roll_decideg(),
             pitch_decideg=core.attitude.pitch_decideg(), down=core.attitude.down_channel(),
@@ -293,9 +300,6 @@ class Commands:
         elif self.upload.request >= 0:
             self._refuse(self.upload.request, Refused(codes.CANCELLED))
             self.upload.request = -1
-
-    def _is_paused(self) -> int:
-        return int(self._core.state == messages.RUNNING and self._core.player.paused)
 
     def _armed(self) -> None:
         self._not_tripped()

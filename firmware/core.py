@@ -97,7 +97,7 @@ class Core:
         if self.state in (messages.ARMED, messages.RUNNING):
             self.state = messages.IDLE
             self.reports.event(messages.DISARMED, code, 255, value)
-            self.player.step = 0
+            self.player.leave()
         self.lease_ms = 0
 
     def trip(self, code: int, channel: int = 255, value: int = 0) -> None:
@@ -109,7 +109,7 @@ class Core:
             self.state = messages.TRIPPED
             self.lease_ms = 0
             self.reports.event(messages.TRIP, code, channel, value)
-            self.player.step = 0
+            self.player.leave()
 
     def clear(self) -> bool:
         """Leave the tripped state; False when the cause is still there."""
@@ -139,7 +139,7 @@ class Core:
         if event == messages.FINISHED:
             self.reports.step_done()
         self.reports.event(event, code, 255, value)
-        self.player.step = 0
+        self.player.leave()
 
     def offer(self, hello) -> bool:
         """Have a session begin with its first frame; return whether it may, as things stand.

@@ -29,6 +29,7 @@ class Player:
         self.gone = 0  # bytes of a streamed code that were dropped before it
         self.failed = 0  # code of what has aborted the program that now runs its way after an abort
         self.paused = False
+        self.news = False  # that the reports have to look at: a note, a pause or its end
         self.noted = array("H", [0] * OPS_PER_STEP)  # steps of the notes that were passed, for the reports
         self.notes = 0
         self.outcome = FINISHED
@@ -78,7 +79,13 @@ class Player:
         self._waiting = False
         self._skips_to = NOWHERE
         self._depth = self._guard_count = self._steps_left = 0
-        self.paused = paused
+        self.paused = self.news = paused
+
+    def leave(self) -> None:
+        """Stand in no step of any program."""
+        self.step = 0
+        self.news = self.news or self.paused
+        self.paused = False
 
     def shift(self, count: int) -> None:
         """Follow the code of a stream, whose first bytes were dropped."""
@@ -89,7 +96,7 @@ class Player:
     def pause(self, now_ms: int) -> None:
         """Let the program's clock stand still."""
         if not self.paused:
-            self.paused = True
+            self.paused = self.news = True
             self._paused_ms = now_ms
         self._steps_left = 0
 
@@ -101,6 +108,7 @@ class Player:
             self._wait_until_ms += late_ms
             self._began_ms += late_ms
             self.paused = False
+            self.news = True
         stands_at_mark = self.step == 0 or (self.at < self.end and self.code[self.at] == program.STEP)
         self._steps_left = 0 if not one_step else 2 if stands_at_mark else 1
 
@@ -127,11 +135,12 @@ class Player:
         for _ in range(OPS_PER_STEP):
             if now_ms - self._cursor_ms < 0:
                 return RUNNING
-            if self.at == self.end:
-                return STARVED if self._skips_to == NOWHERE else RUNNING
-            if self._skips_to != NOWHERE:
-                self._skip(now_ms)
-                continue
+            if self._streamed:
+                if self.at == self.end:
+                    return STARVED if self._skips_to == NOWHERE else RUNNING
+                if self._skips_to != NOWHERE:
+                    self._skip(now_ms)
+                    continue
             outcome = self._acts[self.code[self.at]](now_ms)
             if outcome >= 0:
                 return outcome
@@ -285,6 +294,7 @@ class Player:
         if self.notes < OPS_PER_STEP:  # as many as a control step passes
             self.noted[self.notes] = program.number(self.code, self.at + 1, 2)
             self.notes += 1
+            self.news = True
         return self._go_on()
 
     def _go_on(self) -> int:
@@ -333,13 +343,10 @@ class Player:
         mask, quantifier = self._masks[place], self._quantifiers[place]
         if quantifier == program.CHOSEN:
             mask = 1 << self._chosen[mask]
-        source = self._sources[place]
-        if source == program.TIME:
-            passed_ms = self._now_ms - self._began_ms
-            return passed_ms > mask if above else passed_ms < mask
-        if source in BY_RESISTANCE:
-            return self._holds_by_resistance(source, quantifier, mask, value, above)
         if readings is None:
+            source = self._sources[place]
+            if source in BY_RESISTANCE:
+                return self._holds_by_resistance(source, quantifier, mask, value, above)
             return self._holds_for_robot(source, mask, value, above)
         want_all = quantifier == program.ALL
         channel = 0
@@ -373,6 +380,9 @@ class Player:
         return want_all
 
     def _holds_for_robot(self, source: int, mask: int, value: int, above: bool) -> bool:
+        if source == program.TIME:
+            passed_ms = self._now_ms - self._began_ms
+            return passed_ms > mask if above else passed_ms < mask
         if source in program.OF_ATTITUDE and not self._attitude.known:
             self._blind = True
             return False

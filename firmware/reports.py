@@ -45,18 +45,13 @@ class Reports:
 
     def tell(self) -> None:
         """Send what the control step left to tell: notes, a step, a pause, coils cut off, a lost sensor."""
-        if self._player.notes:
-            self._notes()
+        if self._player.news:
+            self._news()
         if self._player.step != self._step:
             self.step_done()
             self._step = self._player.step
             if self._step:
                 self.event(messages.STEP)
-        paused = self._player.paused and self._core.state == messages.RUNNING
-        if paused != self._paused:
-            self._paused = paused
-            if self._core.state == messages.RUNNING:
-                self.event(messages.PAUSED if paused else messages.RESUMED)
         if self._channels.cut_off_mask:
             self._cut_offs(self._core)
         if self._attitude.lost:
@@ -91,10 +86,16 @@ class Reports:
             )  # fmt: skip
         return told
 
-    def _notes(self) -> None:
-        for place in range(self._player.notes):
-            self.event(messages.NOTED, step=self._player.noted[place])
-        self._player.notes = 0
+    def _news(self) -> None:
+        player = self._player
+        player.news = False
+        for place in range(player.notes):
+            self.event(messages.NOTED, step=player.noted[place])
+        player.notes = 0
+        if player.paused != self._paused:
+            self._paused = player.paused
+            if self._core.state == messages.RUNNING:
+                self.event(messages.PAUSED if player.paused else messages.RESUMED)
 
     def _cut_offs(self, core) -> None:
         for channel in range(core.channels.count):

@@ -24,6 +24,7 @@ class Upload:
         self.streamed = False
         self.needs_attitude = self.needs_camera = self.needs_loop = False  # as the verification found
         self.needs_load = self.needs_press = False
+        self.waits = False  # there may be something to verify
         self.request = -1  # number of the start that waits for the verification, -1: none
         self._profile = profile
         self._header = None
@@ -88,6 +89,7 @@ class Upload:
                 raise Refused(codes.BAD_CODE, 255, len(self.code))
             self._check = self._new_check()
         self.request = request
+        self.waits = True
 
     def go_on(self) -> bool:
         """Verify some more; return whether all that is there may run, or raise Refused."""
@@ -121,6 +123,7 @@ class Upload:
             raise Refused(codes.TOO_LARGE, 255, len(code), room)
         self.code[check.end : check.end + len(code)] = code
         check.end += len(code)
+        self.waits = True
 
     def _drop(self, count: int, player) -> None:
         """Move the code to the front, over what the sequencer has passed, a little at a time for want of memory."""
