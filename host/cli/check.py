@@ -8,6 +8,8 @@ from host.cli.connection import connected
 from host.cli.options import json_option, robot_option
 from host.cli.output import emit
 from host.cli.scripts import place, proven
+from host.gait.diagnostics import GaitError
+from host.gait.forecast import foretell
 from host.gait.script import load
 
 
@@ -17,11 +19,16 @@ from host.gait.script import load
 @click.option("-p", "--param", "params", multiple=True, metavar="NAME=VALUE", help="Give a parameter another value.")
 @json_option
 def command(script: str, robot: str | None, params: tuple[str, ...], as_json: bool) -> None:
-    """Prove a script against the limits of its robot: worst-case time, heat and current.
+    """Prove a script against the limits of its robot: worst-case time, heat and current, predicted temperatures.
 
     The limits are asked of the robot itself; nothing is uploaded and nothing moves.
     """
     tree = load(script)
-    with connected(place(tree, robot), watch_only=True) as face:
-        _, report = proven(tree, face.profile, params)
-    emit(as_json, report.as_dict(), report.lines())
+    address = place(tree, robot)
+    with connected(address, watch_only=True) as face:
+        compiled, report = proven(tree, face.profile, params)
+    forecast = foretell(compiled, address)
+    if forecast.diagnostics:
+        raise GaitError(forecast.diagnostics)
+    fields = report.as_dict() | {"forecast": forecast.as_dict()}
+    emit(as_json, fields, [*report.lines(), *forecast.lines()])
