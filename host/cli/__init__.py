@@ -42,6 +42,7 @@ COMMANDS = {
     "run": "Check a script, run it, watch and report.",
     "key": "Make pairing keys.",
     "attach": "Take over the program that runs: watch it to its end, or stop it.",
+    "lsp": "Serve an editor: mistakes, completion and hover for scripts.",
     "explain": "Explain an error, refusal or fault code.",
     "deploy": "Put the firmware on a board and keep it once it is healthy.",
     "log": "Look into logs: info, export, plot.",
