@@ -69,7 +69,7 @@ PLANTED = (
     ("wait", "E140", 1, 1),
     ("wait until A.temperature > 60 C else abort", "E141", 1, 1),
     ("wait until A.temperature > 60 C timeout 4 s", "E142", 1, 1),
-    ("wait until A.temperature > 60 C timeout 4 s else stop", "E142", 1, 45),
+    ("wait until A.temperature > 60 C timeout 4 s else stop", "E172", 1, 50),
     ("together:\n    wait until A.temperature > 60 C timeout 4 s else abort", "E143", 2, 5),
     ("guard A.temp > 60 C", "E144", 1, 9),
     ("guard A.temperature >= 60 C", "E145", 1, 7),

@@ -231,7 +231,11 @@ def test_a_robot_of_coils_is_told_that_it_has_no_joints(body, code, column):
         ("fire R at 60 % for 1 s", "R is a joint", "move it: `move R to 8 deg over 2 s`"),
         ("move A to 8 deg over 2 s", "A is a coil", "fire it: `fire A at 60 % for 600 ms`"),
         ("guard R.temperature > 6 C", "R is a joint: it has no `temperature` to compare", "it has: angle current"),
-        ("guard A.angle > 6 deg", "A is a coil: it has no `angle` to compare", "it has: temperature heat"),
+        (
+            "guard A.angle > 6 deg",
+            "A is a coil: it has no `angle` to compare",
+            "it has: temperature heat resistance martensite",
+        ),
         ("move Q to 8 deg over 2 s", "the robot round has no coil or joint `Q`", "it has: A B R L all front odd"),
         ("guard R.voltage < 5 mA", "there is no `voltage` to compare", "write `supply.voltage`"),
         ("guard R L.angle > 6 deg", "`R` is neither any nor all", "write `any R L.angle` or `all R L.angle`"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from host.gait import channels, tree, units
+from host.gait import channels, tree, turns, units
 from host.gait.diagnostics import did_you_mean
 from host.gait.plan import Aim, Op
 from host.gait.scope import Chosen, Scope
@@ -41,7 +41,7 @@ def declare_circle(node: tree.Circle, scope: Scope) -> None:
 def let(node: tree.Let, scope: Scope, step: int) -> list[Op]:
     """Return the choice of a coil; from here on its name stands for it."""
     scope.sees(node.place)
-    circle, ahead, kept = _circle(node, scope), _ahead(node, scope), _kept(node, scope)
+    circle, ahead, kept = turns.circle(_circle(node, scope), node, scope), _ahead(node, scope), _kept(node, scope)
     if not circle or ahead is None or kept is None:
         return []
     mask = sum(1 << channel for channel in circle)
@@ -83,6 +83,7 @@ def _kept(node: tree.Let, scope: Scope) -> int | None:
             most = f"the robot keeps {program.AIMS_MAX} coils, this is one more"
             scope.problems.add(node.name.place, "E314", most)
         scope.chosen[name] = Chosen(kept)
+    scope.skipped.discard(name)
     return scope.chosen[name].kept
 
 

@@ -9,7 +9,9 @@ from host.gait.scope import Scope
 
 ORDER_MAX_MS = 0xFFFF
 LONG_MAX_MS = 24 * 3600 * 1000
-KINDS = {tree.Fire: "fire", tree.Move: "move", tree.Orient: "orient", tree.Press: "press"}
+KINDS: dict[type[tree.Order], str] = {
+    tree.Fire: "fire", tree.Hold: "hold", tree.Move: "move", tree.Orient: "orient", tree.Press: "press"
+}  # fmt: skip
 
 
 def once(clauses: Sequence[tree.Clause | tree.Otherwise], scope: Scope) -> None:
@@ -45,11 +47,11 @@ def need(node: tree.Order, scope: Scope, *wanted: tuple[str, str, str, str]) -> 
             scope.problems.add(node.place, code, f"{KINDS[type(node)]} has no {what}", f"add `{form}`")
 
 
-def fit(node: tree.Order, time_ms: int, parts_ms: dict[str, int], scope: Scope) -> bool:
+def fit(node: tree.Order, time_ms: int | None, parts_ms: dict[str, int], scope: Scope) -> bool:
     """Return whether each part is at most as long as the order; the first that is not is reported."""
     for word, part_ms in parts_ms.items():
         clause = node.clause(word)
-        if clause is not None and part_ms > time_ms:
+        if clause is not None and time_ms is not None and part_ms > time_ms:
             message = f"the {word} of {part_ms} ms is longer than the {KINDS[type(node)]} of {time_ms} ms"
             scope.problems.add(clause.place, "E134", message)
             return False

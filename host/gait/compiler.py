@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from host.gait.bounds import hold_to_limits
 from host.gait.diagnostics import Problems
 from host.gait.expand import expand
 from host.gait.plan import Op, Step, encode
@@ -41,11 +42,16 @@ class Compiled:
 
 
 def compile_script(script: Script, profile: Profile, overrides: Sequence[str] = ()) -> Compiled:
-    """Return the program, or raise GaitError with everything that is wrong; limits are the checker's part."""
+    """Return the program, or raise GaitError with everything that is wrong.
+
+    Limits are the checker's part; but where there are mistakes, what single orders break is told with them.
+    """
     problems = Problems(script.files, script.found)
     if not all(file.readable for file in script.files):
         problems.raise_any()
     expansion = expand(script, profile, overrides, problems)
+    if problems.found:
+        hold_to_limits((*expansion.plan, *expansion.unsound), profile, problems)
     problems.raise_any()
     code = encode(expansion.plan)
     return Compiled(script, profile, expansion.plan, expansion.steps, expansion.params, code)

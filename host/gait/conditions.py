@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from host.gait import channels, sources, tree
+from host.gait import channels, sources, tree, turns
+from host.gait.clauses import LONG_MAX_MS
 from host.gait.diagnostics import did_you_mean
 from host.gait.scope import Scope
 from host.gait.sources import Sources
@@ -34,9 +35,12 @@ def condition(node: tree.AnyCondition, scope: Scope) -> program.Condition | None
     if compare is None:
         choice = "<" if "<" in node.compare else ">"
         scope.problems.add(node.place, "E145", f"`{node.compare}` is no comparison here", f"write `{choice}`")
-    value = scope.measured(node.value, source.kind, LEAST, MOST, source.size) if source else scope.value(node.value)
+    ends = (0, LONG_MAX_MS) if source and source.code == program.TIME else (LEAST, MOST)
+    value = scope.measured(node.value, source.kind, *ends, source.size) if source else scope.value(node.value)
     if source is None or compare is None or named is None or not isinstance(value, int):
         return None
+    if source.code == program.TIME:  # more than the room for a value holds
+        return program.Condition(source.code, named[0], compare, 0, value)
     return program.Condition(source.code, named[0], compare, value, named[1])
 
 
@@ -44,7 +48,7 @@ def _facing(node: tree.Facing, scope: Scope) -> program.Condition | None:
     """Return the condition that a coil, or one of a group, is the nearest to down."""
     scope.sees(node.place)
     kept = scope.aimed(node.coil)
-    mask = channels.coils([node.coil], scope) if kept is None else kept
+    mask = turns.masked(channels.coils([node.coil], scope), [node.coil], scope) if kept is None else kept
     if node.way.text != DOWN:
         _unmeasured(node.way, [DOWN], scope)
         return None
@@ -60,7 +64,7 @@ def _whole(node: tree.Reading, scope: Scope) -> Sources:
         scope.watches(node.place)
     elif quantity in sources.LOAD:
         scope.weighs(node.place)
-    elif quantity in sources.BODY or (profile.camera is None and profile.load is None):
+    elif quantity not in sources.CLOCK and (quantity in sources.BODY or not (profile.camera or profile.load)):
         scope.sees(node.place)
     return sources.WHOLE
 

@@ -20,9 +20,11 @@ def move(node: tree.Move, scope: Scope, step: int) -> list[Op]:
     time_ms = clauses.time_ms(node, "over", scope)
     overlap_ms = clauses.part_ms(node, "overlap", scope)
     clauses.need(node, scope, ("to", "E192", unit.quantity, f"to {unit.example}"), ("over", "E193", "time", "over 2 s"))
-    if not mask or target is None or time_ms is None or not clauses.fit(node, time_ms, {"overlap": overlap_ms}, scope):
+    fits = clauses.fit(node, time_ms, {"overlap": overlap_ms}, scope)
+    if target is None:
         return []
-    return _lasting(Move(mask, target, time_ms, step, node), overlap_ms)
+    order = Move(mask or 0, target, time_ms or 0, step, node)
+    return _lasting(order, overlap_ms, bool(mask and time_ms and fits), scope)
 
 
 def orient(node: tree.Orient, scope: Scope, step: int) -> list[Op]:
@@ -41,7 +43,8 @@ def orient(node: tree.Orient, scope: Scope, step: int) -> list[Op]:
     clauses.need(node, scope, ("for", "E195", "time", "for 3 s"))
     if target is None or time_ms is None or not clauses.fit(node, time_ms, {"overlap": overlap_ms}, scope):
         return []
-    return _lasting(Orient(profile.mask(profile.joint_labels[:2]), target, time_ms, step, node), overlap_ms)
+    order = Orient(profile.mask(profile.joint_labels[:2]), target, time_ms, step, node)
+    return _lasting(order, overlap_ms, True, scope)
 
 
 def press(node: tree.Press, scope: Scope, step: int) -> list[Op]:
@@ -57,14 +60,16 @@ def press(node: tree.Press, scope: Scope, step: int) -> list[Op]:
     overlap_ms = clauses.part_ms(node, "overlap", scope, clauses.LONG_MAX_MS)
     clauses.need(node, scope, ("to", "E196", "force", "to 5 N"), ("over", "E197", "time to get there", "over 1 s"))
     clauses.need(node, scope, ("for", "E198", "time", "for 20 s"))
-    if force_mn is None or over_ms is None or time_ms is None:
-        return []
-    if not clauses.fit(node, time_ms, {"over": over_ms, "overlap": overlap_ms}, scope):
-        return []
-    return _lasting(Press(profile.mask(profile.joint_labels[:1]), force_mn, over_ms, time_ms, step, node), overlap_ms)
+    fits = clauses.fit(node, time_ms, {"over": over_ms or 0, "overlap": overlap_ms}, scope)
+    mask = profile.mask(profile.joint_labels[:1])
+    order = Press(mask, force_mn or 0, over_ms or 0, time_ms or 0, step, node)
+    return _lasting(order, overlap_ms, bool(force_mn is not None and over_ms and time_ms and fits), scope)
 
 
-def _lasting(order: Move | Orient | Press, overlap_ms: int) -> list[Op]:
+def _lasting(order: Move | Orient | Press, overlap_ms: int, sound: bool, scope: Scope) -> list[Op]:
     """Return the order and the wait for its end, less the time by which the next statement overlaps it."""
+    if not sound:
+        scope.unsound.append(order)
+        return []
     wait_ms = order.time_ms - overlap_ms
     return [order, Delay(wait_ms, order.step)] if wait_ms else [order]

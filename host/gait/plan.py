@@ -18,6 +18,7 @@ class Step:
     place: Place
     text: str
     calls: tuple[Place, ...] = ()
+    note: str = ""  # what a note says, with its params put in
 
     def __str__(self) -> str:
         places = [self.place, *reversed(self.calls)]
@@ -26,7 +27,10 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Fire:
-    """Heat the coils of `mask`, or the one of them that the robot chose and keeps in place `kept`; does not wait."""
+    """Heat the coils of `mask`, or the one of them that the robot chose and keeps in place `kept`; does not wait.
+
+    One that `holds` keeps them near the cut-off for the whole time instead of ending there.
+    """
 
     mask: int
     duty_permille: int
@@ -34,8 +38,14 @@ class Fire:
     cutoff_decidegc: int
     ramp_ms: int
     step: int
-    node: tree.Fire
+    node: tree.Fire | tree.Hold
     kept: int | None = None
+    holds: bool = False
+
+    @property
+    def cutoff(self) -> int:
+        """Return the cut-off as it stands in the code."""
+        return self.cutoff_decidegc | (program.KEEP if self.holds else 0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,15 +129,41 @@ class Loop:
     node: tree.Repeat
 
 
+@dataclass(frozen=True, slots=True)
+class Note:
+    """Tell the host that the robot has come here."""
+
+    step: int
+    node: tree.Note
+
+
+@dataclass(frozen=True, slots=True)
+class Label:
+    """A place at the top of the plan that waits further up may go on at; labels count from 0."""
+
+    number: int
+    step: int
+    node: tree.Label
+
+
+@dataclass(frozen=True, slots=True)
+class OnFault:
+    """What runs when the program is aborted; it stands at the end of a plan and is passed over otherwise."""
+
+    body: tuple[Op, ...]
+    step: int
+    node: tree.OnFault
+
+
 Order = Fire | Move | Orient | Press
-Op = Order | Aim | Delay | Wait | Guard | Loop
+Op = Order | Aim | Delay | Wait | Guard | Loop | Note | Label | OnFault
 
 
 def walk(plan: Iterable[Op]) -> Iterator[Op]:
-    """Yield every op of a plan once, those within loops after the loop."""
+    """Yield every op of a plan once, those within loops and what runs after an abort after what holds them."""
     for op in plan:
         yield op
-        if isinstance(op, Loop):
+        if isinstance(op, Loop | OnFault):
             yield from walk(op.body)
 
 
@@ -142,17 +178,24 @@ def _block(plan: Iterable[Op]) -> bytes:
     for op in plan:
         if isinstance(op, Loop):
             parts += [program.repeat(op.count), _block(op.body), program.next_()]
-            continue
-        if not isinstance(op, Guard) and op.step != step:
+        elif isinstance(op, Label):
+            parts += [program.label(op.number), program.step(op.step)]
             step = op.step
-            parts.append(program.step(step))
-        parts.append(_op(op))
+        elif isinstance(op, OnFault):
+            parts += [program.halt(), program.label(program.ON_FAULT), program.step(op.step), _block(op.body)]
+        else:
+            if not isinstance(op, Guard) and op.step != step:
+                step = op.step
+                parts.append(program.step(step))
+            parts.append(_op(op))
     return b"".join(parts)
 
 
-def _op(op: Order | Aim | Delay | Wait | Guard) -> bytes:  # noqa: PLR0911  # one for each op
+def _op(op: Order | Aim | Delay | Wait | Guard | Note) -> bytes:  # noqa: PLR0911  # one for each op
     if isinstance(op, Delay):
         return bytes(program.delay(op.time_ms))
+    if isinstance(op, Note):
+        return bytes(program.note(op.step))
     if isinstance(op, Wait):
         return bytes(program.wait(op.condition, op.timeout_ms, op.otherwise))
     if isinstance(op, Guard):
@@ -166,7 +209,7 @@ def _op(op: Order | Aim | Delay | Wait | Guard) -> bytes:  # noqa: PLR0911  # on
     if isinstance(op, Press):
         return bytes(program.press(op.target_mn, op.over_ms, op.time_ms))
     if op.kept is not None:
-        return bytes(program.aimed(op.kept, op.duty_permille, op.time_ms, op.cutoff_decidegc, op.ramp_ms))
+        return bytes(program.aimed(op.kept, op.duty_permille, op.time_ms, op.cutoff, op.ramp_ms))
     if op.ramp_ms:
-        return bytes(program.ramp(op.mask, op.duty_permille, op.time_ms, op.cutoff_decidegc, op.ramp_ms))
-    return bytes(program.fire(op.mask, op.duty_permille, op.time_ms, op.cutoff_decidegc))
+        return bytes(program.ramp(op.mask, op.duty_permille, op.time_ms, op.cutoff, op.ramp_ms))
+    return bytes(program.fire(op.mask, op.duty_permille, op.time_ms, op.cutoff))

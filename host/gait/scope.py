@@ -12,11 +12,14 @@ from fractions import Fraction
 from host.gait import tree, units
 from host.gait.diagnostics import Problems, did_you_mean
 from host.gait.jointunits import UNITS, JointUnit
+from host.gait.jumps import Labels
+from host.gait.plan import Op
 from host.gait.tree import Expression, Name, Place, Reference
 from host.gait.units import Quantity, UnitError
 from host.profile import Profile
 
 EVERY = "all"
+Table = tuple[int | None, ...]  # by channel
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +49,11 @@ Value = Quantity | CoilSet | CellSet | Chosen | None  # None: wrong, and reporte
 
 @dataclass
 class Scope:
-    """The names that hold at one place; `unread` are words of lines that could not be read."""
+    """The names that hold at one place; `unread` are words of lines that could not be read.
+
+    `table` gives the coil that comes in the place of each one within a `sym`. `labels` is None where it is not known
+    from where a def is called. `unsound` are ops with a mistake in them: what is known of them is held to the limits.
+    """
 
     problems: Problems
     profile: Profile
@@ -56,6 +63,10 @@ class Scope:
     circles: dict[str, tuple[int, ...]] = field(default_factory=dict)
     chosen: dict[str, Chosen] = field(default_factory=dict)
     reach: dict[int, int] = field(default_factory=dict)  # mask of the coils that a place may hold
+    skipped: set[str] = field(default_factory=set)  # chosen names whose let a wait may have jumped over
+    table: Table | None = None
+    labels: Labels | None = None
+    unsound: list[Op] = field(default_factory=list)
 
     def inner(self, arguments: Mapping[str, Value]) -> Scope:
         """Return the scope of a def that is called with these arguments."""
@@ -102,7 +113,8 @@ class Scope:
     def aimed(self, node: tree.Coil) -> int | None:
         """Return the place of a coil that the robot chooses, or None when this is another coil."""
         value = self.known.get(node.name) if isinstance(node, Reference) else None
-        return value.kept if isinstance(value, Chosen) else None
+        is_sure = isinstance(node, Reference) and node.name not in self.skipped
+        return value.kept if isinstance(value, Chosen) and is_sure else None
 
     @property
     def known(self) -> dict[str, Value]:
@@ -139,6 +151,10 @@ class Scope:
     def lookup(self, node: Reference) -> Value:
         """Return what `$name` stands for."""
         known = self.known
+        if node.name in self.skipped and isinstance(known.get(node.name), Chosen):
+            message = f"`${node.name}` may not be chosen yet: the robot may have jumped over its let"
+            self.problems.add(node.place, "E176", message, "choose it again with a `let` below the label")
+            return None
         if node.name in known:
             return known[node.name]
         if node.name not in self.unread:

@@ -27,6 +27,8 @@ PARTS = {"supply": SUPPLY, "board": BOARD}
 COIL = {
     "temperature": Source(program.TEMPERATURE, units.TEMPERATURE),
     "heat": Source(program.HEAT, units.ENERGY),
+    "resistance": Source(program.RESISTANCE, units.RESISTANCE, 10),
+    "martensite": Source(program.MARTENSITE, units.SHARE),
 }
 POSITION = {unit.quantity: Source(program.POSITION, unit.kind) for unit in UNITS.values()}
 JOINT = {**POSITION, "current": Source(program.JOINT_CURRENT, units.CURRENT)}
@@ -34,7 +36,8 @@ CELL = {"pressure": Source(program.PRESSURE, units.PRESSURE)}
 BODY = {"roll": Source(program.ROLL, units.ANGLE, 10), "pitch": Source(program.PITCH, units.ANGLE, 10)}
 OBJECT = {"orientation": Source(program.ORIENTATION, units.ANGLE)}
 LOAD = {"force": Source(program.FORCE, units.FORCE)}
-WHOLE = BODY | OBJECT | LOAD
+CLOCK = {"time": Source(program.TIME, units.TIME)}
+WHOLE = BODY | OBJECT | LOAD | CLOCK
 
 
 def of_joint(profile: Profile) -> Sources:
@@ -48,6 +51,8 @@ def owner(quantity: str, profile: Profile) -> str:
         return f"write `{UNITS[profile.unit].quantity}`: the joints of {profile.robot} go by {profile.unit}"
     if quantity in LOAD and profile.load is not None:
         return f"write `{quantity}` by itself: the robot has one load cell"
+    if quantity in CLOCK:
+        return f"write `{quantity}` by itself: it counts from the start of the program"
     several: dict[str, Source] = {}
     for has, sources in ((profile.coil_labels, COIL), (profile.joint_labels, of_joint(profile)), (profile.cells, CELL)):
         several |= sources if has else {}

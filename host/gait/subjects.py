@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
-from host.gait import cells, channels, sources, tree
+from host.gait import cells, channels, sources, tree, turns
 from host.gait.scope import EVERY, Scope
 from host.gait.sources import Sources
 from host.gait.tree import Name
@@ -51,9 +51,11 @@ def _channels(node: tree.Condition, scope: Scope) -> tuple[Sources, Asked]:
     profile, quantity = scope.profile, node.quantity.text
     of_joints = quantity in sources.JOINT or (quantity not in sources.COIL and not profile.coil_labels)
     every = profile.mask(profile.joint_labels if of_joints else profile.coil_labels)
-    named = _quantified(
-        node, scope, Kin(channels.known(scope), every, lambda nodes: channels.masked(nodes, scope), scope.word)
-    )
+
+    def masked(nodes: Iterable[tree.Coil]) -> int | None:
+        return turns.masked(channels.masked(nodes, scope), nodes, scope)
+
+    named = _quantified(node, scope, Kin(channels.known(scope), every, masked, scope.word))
     if named is not None and named[0] != program.CHOSEN:
         others = profile.named((named[1] or -1) & ~every)
         if others and quantity in sources.JOINT | sources.COIL:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from host.gait.diagnostics import Problems
-from host.gait.plan import Delay, Fire, Loop, Move, Op, Order, Orient, Press
+from host.gait.plan import Delay, Fire, Loop, Move, Note, Op, Order, Orient, Press
 
 EVENTS_MAX = 5_000
 CONFLICTS = {
@@ -17,21 +17,24 @@ CONFLICTS = {
 }
 
 
+Event = tuple[int, int, Order | Note]  # when, child, what
+
+
 class TooLarge(Exception):
     """A script that unrolls to more than any robot could hold."""
 
 
 @dataclass
 class _Timeline:
-    """Orders at their times [ms], each with the number of the statement it came from."""
+    """Orders and notes at their times [ms], each with the number of the statement it came from."""
 
-    events: list[tuple[int, int, Order]] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
     turns: int = 0
 
     def lay(self, ops: Iterable[Op], at_ms: int, child: int) -> int:
         """Put down `ops` from `at_ms` on; return when they end."""
         for op in ops:
-            if isinstance(op, Order):
+            if isinstance(op, Order | Note):
                 self.events.append((at_ms, child, op))
             elif isinstance(op, Delay):
                 at_ms += op.time_ms
@@ -64,7 +67,7 @@ def duration_ms(ops: Iterable[Op]) -> int:
     return total
 
 
-def _with_delays(events: Iterable[tuple[int, int, Order]], end_ms: int) -> Iterator[Op]:
+def _with_delays(events: Iterable[Event], end_ms: int) -> Iterator[Op]:
     now_ms, step = 0, 0
     for at_ms, _, order in events:
         if at_ms > now_ms:
@@ -75,9 +78,11 @@ def _with_delays(events: Iterable[tuple[int, int, Order]], end_ms: int) -> Itera
         yield Delay(end_ms - now_ms, step)
 
 
-def _report_conflicts(events: Iterable[tuple[int, int, Order]], problems: Problems) -> None:
+def _report_conflicts(events: Iterable[Event], problems: Problems) -> None:
     busy: list[tuple[int, int, Order]] = []  # end, child, order
     for at_ms, child, order in events:
+        if isinstance(order, Note):
+            continue
         busy = [entry for entry in busy if entry[0] > at_ms]
         for _, other, earlier in busy:
             if other != child and _kept(earlier) == _kept(order) and earlier.mask & order.mask:

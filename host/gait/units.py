@@ -1,7 +1,7 @@
 """Quantities of the gait language: exact numbers with a kind, and the units they are written in.
 
-Base units are the robot's own integers: ms, permille, 0.1 C, mA, mV, mJ, 0.01 deg, 0.01 mm, mN, Pa. Arithmetic is exact
-(fractions) and is rounded once, when a value becomes an order.
+Base units are the robot's own integers: ms, permille, 0.1 C, mA, mV, mJ, 0.01 deg, 0.01 mm, mN, Pa, mohm.
+Arithmetic is exact (fractions) and is rounded once, when a value becomes an order.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ ANGLE = "angle"
 LENGTH = "length"
 FORCE = "force"
 PRESSURE = "pressure"
+RESISTANCE = "resistance"
 
 UNITS = {
     "ms": Unit(TIME, 1),
@@ -46,6 +47,8 @@ UNITS = {
     "mN": Unit(FORCE, 1),
     "kPa": Unit(PRESSURE, 1000),
     "Pa": Unit(PRESSURE, 1),
+    "ohm": Unit(RESISTANCE, 1000),
+    "mohm": Unit(RESISTANCE, 1),
 }
 OF_KIND = {
     kind: [name for name, unit in UNITS.items() if unit.kind == kind] for kind in {u.kind for u in UNITS.values()}
@@ -59,6 +62,7 @@ ALIASES = {
     "millimetre": "mm", "millimetres": "mm", "millimeter": "mm", "millimeters": "mm", "um": "mm", "cm": "mm", "m": "mm",
     "n": "N", "newton": "N", "newtons": "N", "kN": "N", "mn": "mN",
     "kpa": "kPa", "pa": "Pa", "MPa": "kPa", "hPa": "kPa", "mbar": "kPa", "bar": "kPa",
+    "Ohm": "ohm", "ohms": "ohm", "Ohms": "ohm", "mOhm": "mohm", "kohm": "ohm",
 }  # fmt: skip
 
 
