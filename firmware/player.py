@@ -11,6 +11,7 @@ from protocol import program
 
 OPS_PER_STEP = 32
 NOWHERE = -1
+GONE = 0xFFFF  # where no op stands: what a stream has passed does not come back
 BY_RESISTANCE = (program.RESISTANCE, program.MARTENSITE)
 WAIT = program.GUARDS_MAX  # where the condition of the wait is kept, behind those of the guards
 RUNNING, FINISHED, TIMED_OUT, GUARDED, LOST = 0, 1, 2, 3, 4  # LOST: it asked where down is, and nobody knows
@@ -92,6 +93,8 @@ class Player:
         self.at -= count
         self.end -= count
         self.gone += count
+        for i in range(self._guard_count):
+            self._guards[i] = GONE
 
     def pause(self, now_ms: int) -> None:
         """Let the program's clock stand still."""
@@ -109,7 +112,8 @@ class Player:
             self._began_ms += late_ms
             self.paused = False
             self.news = True
-        stands_at_mark = self.step == 0 or (self.at < self.end and self.code[self.at] == program.STEP)
+        is_due = self.at < self.end and now_ms - self._cursor_ms >= 0
+        stands_at_mark = self.step == 0 or (is_due and self.code[self.at] == program.STEP)
         self._steps_left = 0 if not one_step else 2 if stands_at_mark else 1
 
     def catch(self, code: int, now_ms: int) -> bool:
