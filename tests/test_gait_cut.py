@@ -6,6 +6,7 @@ from host.errors import BadRequest
 from host.gait.checker import check
 from host.gait.cut import cut
 from protocol.program import disassemble
+from protocol.verify import check_code
 from tests.gait_scripts import CIRCLE, ball_robot, compiled, hand_robot
 
 LOOPED = """\
@@ -68,6 +69,31 @@ def test_the_last_let_of_each_name_is_chosen_anew():
 
     assert sorted(row[1:3] for row in rest if row[0] == "aim") == [(0, 2), (1, 1)]
     assert rest[-2][0] == "aimed"
+
+
+CAUGHT = """\
+fire A at 50 % for 200 ms
+wait until A.temperature > 90 C timeout 1 s else recover
+fire B at 50 % for 200 ms
+label recover
+fire C at 50 % for 200 ms
+on fault:
+    fire D at 10 % for 200 ms"""
+
+
+def test_what_runs_on_fault_stays_and_is_no_place_to_begin_from():
+    whole = compiled(CAUGHT)
+
+    assert ("label", 255) in rows(cut(whole, 5))
+    with pytest.raises(BadRequest, match=r"has steps 1 to 5$"):
+        cut(whole, 7)
+
+
+def test_a_label_that_no_wait_goes_on_at_any_more_does_no_harm():
+    rest = cut(compiled(CAUGHT), 3)
+
+    assert fired(rest) == [(3, 0b10), (5, 0b100), (7, 0b1000)]
+    check_code(rest.code, 8, 1024)
 
 
 def test_a_step_keeps_its_number_and_its_line():

@@ -3,7 +3,8 @@
 rest = cut(compiled, 7)     # step 7, as `softrig run` and `softrig status` print it
 
 All guards stay, and so does the last `let` of each name: the robot chooses anew. A loop that the step stands in goes on
-with the rest of its first turn and has all its other turns. What was heated or moved before the step is not repeated.
+with the rest of its first turn and has all its other turns. What was heated or moved before the step is not repeated;
+what runs `on fault` stays, and is no place to begin from.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from dataclasses import replace
 
 from host.errors import BadRequest
 from host.gait.compiler import Compiled
-from host.gait.plan import Aim, Guard, Loop, Op, encode
+from host.gait.plan import Aim, Guard, Loop, OnFault, Op, encode
 
 
 def cut(compiled: Compiled, step: int) -> Compiled:
@@ -35,7 +36,7 @@ def _from(plan: Sequence[Op], step: int, passed: list[Op]) -> list[Op] | None:
             if rest is not None:
                 turns = [replace(op, count=op.count - 1)] if op.count > 1 else []
                 return [*rest, *turns, *plan[place + 1 :]]
-        elif not isinstance(op, Guard) and op.step == step:
+        elif not isinstance(op, Guard | OnFault) and op.step == step:
             return list(plan[place:])
         passed.append(op)
     return None
@@ -52,7 +53,7 @@ def _numbers(plan: Iterable[Op]) -> Iterator[int]:
     for op in plan:
         if isinstance(op, Loop):
             yield from _numbers(op.body)
-        elif not isinstance(op, Guard):
+        elif not isinstance(op, Guard | OnFault):
             yield op.step
 
 
