@@ -10,6 +10,7 @@ the last one of a block, as its column tells. A tree that was never a text (from
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, is_dataclass
+from itertools import pairwise
 from typing import Any
 
 from host.gait.lines import indent
@@ -77,28 +78,26 @@ class _Layout:
         self._lines = file.lines
         self._comments = {comment.place.line: comment for comment in file.comments}
         self._statements = file.statements
-        order = [node.place.line for node in walk(file.statements)]
-        self._next = dict(zip(order, [*order[1:], len(file.lines) + 1], strict=True))
+        order = [0, *(node.place.line for node in walk(file.statements)), len(file.lines) + 1]
+        self._next = dict(pairwise(order))
 
     def sheet(self) -> Sheet:
         """Return the layout of the whole file."""
-        first = self._statements[0].place.line if self._statements else len(self._lines) + 1
-        items, rest = self._block(self._statements, self._between(0, first))
-        return Sheet(items, tidy(tuple(self._text(line) for line in rest), not items, last=True))
+        items, rest = self._block(self._statements, self._after(0))
+        return Sheet(items, tidy(self._texts(rest), not items, last=True))
 
     def _block(self, nodes: tuple[Statement, ...], before: list[int]) -> tuple[tuple[Item, ...], list[int]]:
         """Return the items of a block that begins with the lines `before`, and the lines that follow its last one."""
         items: list[Item] = []
         for node in nodes:
             line, body = node.place.line, getattr(node, "body", ())
-            rest = self._between(line, self._next[line])
+            rest = self._after(line)
             children: tuple[Item, ...] = ()
             after: list[int] = []
             if body:
                 children, rest = self._block(body, rest)
                 after, rest = self._inside(rest, indent(self._lines[body[0].place.line - 1]))
-            lead = tidy(tuple(self._text(number) for number in before), not items)
-            closing = tidy(tuple(self._text(number) for number in after), False)
+            lead, closing = tidy(self._texts(before), not items), tidy(self._texts(after), False)
             beside = self._comments[line].text.rstrip() if line in self._comments else ""
             items.append(Item(node, lead, beside, children, closing))
             before = rest
@@ -114,8 +113,9 @@ class _Layout:
                 count = at
         return lines[:count], lines[count:]
 
-    def _between(self, line: int, other: int) -> list[int]:
-        return list(range(line + 1, other))
+    def _after(self, line: int) -> list[int]:
+        """Return the lines between a statement and the next one."""
+        return list(range(line + 1, self._next[line]))
 
-    def _text(self, number: int) -> str:
-        return self._comments[number].text if number in self._comments else BLANK
+    def _texts(self, lines: list[int]) -> tuple[str, ...]:
+        return tuple(self._comments[line].text if line in self._comments else BLANK for line in lines)

@@ -154,7 +154,7 @@ def _aligned(rows: list[_Row], run: list[int], at: int) -> bool:
     if not run or at - run[-1] > NEAR or _kind(rows[at]) != _kind(rows[run[0]]):
         return False
     widths = [len(rows[each].code) for each in (*run, at)]
-    return max(widths) - min(widths) <= UNEVEN
+    return len(rows[at].cells) > 1 or max(widths) - min(widths) <= UNEVEN
 
 
 def _kind(row: _Row) -> tuple[int, bool]:
