@@ -40,7 +40,7 @@ def check(compiled: Compiled) -> Report:
         script=compiled.script.main.name,
         profile=profile,
         longest_ms=_longest_ms(compiled.plan) + trial.tail_ms + STEP_MS,
-        shortest_ms=trial.now_ms,
+        shortest_ms=trial.shortest_ms,
         coils=tuple(_coils(profile, trial)),
         joints=tuple(_joints(profile, trial)),
         force_mn=max((op.target_mn for op in walk(compiled.plan) if isinstance(op, Press)), default=0),

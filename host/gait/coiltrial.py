@@ -19,6 +19,7 @@ class CoilTrial:
     energy_uj: int = 0
     orders: int = 0
     heat_peak_uj: int = 0
+    longest_ms: int = 0  # on without a pause
     heat_uj: int = 0
     heat_at_ms: int = 0
     since_ms: int = 0
@@ -32,6 +33,13 @@ class CoilTrial:
     reach: int = 0  # mask of the coils that this one stands for
     others_uj: int = 0  # of a chosen coil: the most that one chosen before still holds
     others_at_ms: int = 0
+
+    def raise_to(self, other: CoilTrial) -> None:
+        """Take over what is more in another one that is like this: its sums, its heat."""
+        self.on_ms, self.energy_uj = max(self.on_ms, other.on_ms), max(self.energy_uj, other.energy_uj)
+        self.orders, self.heat_peak_uj = max(self.orders, other.orders), max(self.heat_peak_uj, other.heat_peak_uj)
+        self.longest_ms = max(self.longest_ms, other.longest_ms)
+        self.heat_uj, self.others_uj = max(self.heat_uj, other.heat_uj), max(self.others_uj, other.others_uj)
 
     def rested_ms(self, limits: CoilLimits) -> int:
         """Return until when the coil must rest after its last time on."""

@@ -12,6 +12,7 @@ less than the peak of the sum.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from copy import copy
 from fractions import Fraction
 from math import ceil
 
@@ -23,7 +24,7 @@ from host.gait.plan import Aim, Fire, Op, Wait, walk
 from host.profile import Profile
 from protocol import program
 
-Sums = list[tuple[int, int, int]]
+Sums = list[tuple[int, ...]]
 
 
 class Heating:
@@ -36,6 +37,7 @@ class Heating:
         self.current_peak_ma = 0
         self.full_ma = self.full_uw = 0
         self._profile, self._problems, self._clock = profile, problems, clock
+        self._best: list[CoilTrial] = []
         if not self._count:
             return
         self._limits = profile.coil
@@ -47,8 +49,13 @@ class Heating:
 
     @property
     def coils(self) -> list[CoilTrial]:
-        """Return what each coil of the robot came to."""
+        """Return each coil of the robot as it is now."""
         return self._all[: self._count]
+
+    @property
+    def most(self) -> list[CoilTrial]:
+        """Return the most that each coil of the robot came to on any way."""
+        return (self._best or self._all)[: self._count]
 
     def expect(self, plan: Sequence[Op]) -> None:
         """Learn which coils each name may stand for."""
@@ -77,6 +84,57 @@ class Heating:
             self._settle(channel)
         self._share()
 
+    def abort(self) -> None:
+        """Switch every coil off; it may have been on until its order ended, if a wait came before this one."""
+        for channel, coil in enumerate(self._all):
+            self._settle(channel)
+            if coil.off_ms > self._clock.now_ms:
+                self._switch_off(coil)
+                self._check_heat(channel)
+
+    def lose(self) -> None:
+        """Take it that an abort may come at any time: every coil is as hot as it ever was, and has been on as long."""
+        self._all = [copy(coil) for coil in self._best]
+        for coil in self._all:
+            coil.heat_uj = coil.heat_peak_uj
+            coil.heat_at_ms = coil.end_ms = coil.off_ms = self._clock.now_ms
+            coil.since_ms = self._clock.now_ms - coil.longest_ms
+
+    def save(self) -> list[CoilTrial]:
+        """Return copies of the coils as they are now."""
+        return [copy(coil) for coil in self._all]
+
+    def restore(self, saved: list[CoilTrial]) -> None:
+        """Go on from what was saved."""
+        self._all = saved
+
+    def raise_to(self, mine: list[CoilTrial], other: list[CoilTrial]) -> None:
+        """Take over into one save what is more in another that is like it."""
+        for coil, more in zip(mine, other, strict=True):
+            coil.raise_to(more)
+
+    def copies(self, turns: int, sums: Sums, before: Sums) -> Sums:
+        """Return sums after that many more turns, each of which adds what has come since `before`."""
+        pairs = zip(sums, self.sums(), before, strict=True)
+        return [tuple(have + turns * (now - was) for have, now, was in zip(*rows, strict=True)) for rows in pairs]
+
+    def lengthen(self, saved: list[CoilTrial], sums: Sums) -> None:
+        """Raise the sums of a save to these."""
+        for coil, (on_ms, taken_uj, orders) in zip(saved, sums, strict=True):
+            coil.on_ms, coil.energy_uj = max(coil.on_ms, on_ms), max(coil.energy_uj, taken_uj)
+            coil.orders = max(coil.orders, orders)
+
+    def keep(self) -> None:
+        """Keep what the coils came to on this way, where it is more than on those before."""
+        if self._best:
+            self.raise_to(self._best, self._all)
+        else:
+            self._best = self.save()
+
+    def key(self) -> tuple[tuple[int, ...], ...]:
+        """Return all but heat and sums that what comes depends on."""
+        return tuple(row[:-2] for row in self.state())
+
     def sums(self) -> Sums:
         """Return what each coil has come to so far."""
         return [(coil.on_ms, coil.energy_uj, coil.orders) for coil in self._all]
@@ -93,7 +151,7 @@ class Heating:
             duty = coil.duty_permille if off_ms else 0
             waited = off_ms > 0 and coil.waits != self._clock.waits
             rest_ms = max(coil.rested_ms(self._limits) - self._clock.now_ms, 0)
-            rows.append((left_ms, off_ms, since_ms, duty, coil.heat_uj, rest_ms, waited, coil.others_uj))
+            rows.append((left_ms, off_ms, since_ms, duty, rest_ms, waited, coil.heat_uj, coil.others_uj))
         return tuple(rows)
 
     def skip(self, turns: int, turn_ms: int, most_ms: int, sums: Sums) -> None:
@@ -135,7 +193,7 @@ class Heating:
         left_ms = max((each.rested_ms(self._limits) - self._clock.now_ms for each in kin if each not in on), default=0)
         if left_ms > 0 and (coil not in on or len(kin) > 1):
             self._complain(op, "E312", f"coil {label} must rest for {left_ms} ms more before it is fired again")
-        coil.since_ms = min((each.since_ms for each in on), default=self._clock.now_ms)
+        coil.since_ms = min((self._since_ms(each) for each in on), default=self._clock.now_ms)
         time_ms = op.time_ms + -op.time_ms % STEP_MS
         coil.begin_ms, coil.end_ms, coil.off_ms = (
             self._clock.now_ms,
@@ -148,9 +206,15 @@ class Heating:
         coil.on_ms += time_ms
         coil.energy_uj += energy_uj(coil.power_uw, time_ms)
         on_ms, most_ms = coil.end_ms - coil.since_ms, self._limits.on_max_ms
+        coil.longest_ms = max(coil.longest_ms, on_ms)
         if on_ms > most_ms:
             message = f"coil {label} would be on for {on_ms} ms without a pause, at most {most_ms} ms"
             self._complain(op, "E303", message)
+
+    def _since_ms(self, coil: CoilTrial) -> int:
+        """Return since when a coil is on; if a wait came in between, it may be as long as its orders say."""
+        left_ms = coil.end_ms - self._clock.now_ms
+        return coil.since_ms - (max(left_ms, 0) if coil.waits != self._clock.waits else 0)
 
     def _kin(self, channel: int) -> Iterator[CoilTrial]:
         """Yield this coil and all that may stand for the same one."""
@@ -211,6 +275,18 @@ class Heating:
         coil.heat_peak_uj = max(coil.heat_peak_uj, coil.heat_uj)
         coil.on_ms -= left_ms - had_ms
         coil.energy_uj -= energy_uj(coil.power_uw, left_ms - had_ms)
+
+    def _switch_off(self, coil: CoilTrial) -> None:
+        """End an order one control step from now, or when a wait has come in between, at its end."""
+        left_ms = had_ms = coil.off_ms - self._clock.now_ms
+        coil.since_ms = self._since_ms(coil)
+        if coil.waits == self._clock.waits:
+            had_ms = min(left_ms, 2 * STEP_MS)
+        coil.heat_uj += energy_uj(coil.power_uw, had_ms)
+        coil.heat_peak_uj = max(coil.heat_peak_uj, coil.heat_uj)
+        coil.on_ms -= left_ms - had_ms
+        coil.energy_uj -= energy_uj(coil.power_uw, left_ms - had_ms)
+        coil.end_ms = coil.off_ms = self._clock.now_ms
 
     def _settle(self, channel: int) -> None:
         """Bring the heat of one coil up to now."""

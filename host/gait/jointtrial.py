@@ -23,15 +23,13 @@ class JointTrial:
     order: Move | Orient | Press | None = None  # None: limp
     begin_ms: int = 0  # of its order, if every wait is over at once
     begin_most_ms: int = 0  # if every wait runs out
-    low_centi: int = 0  # where it may have been when its move began, or be while it is oriented or pressed and after
-    high_centi: int = 0
+    low_centi: int = 0  # where it may have been when its move began, or be while it is oriented or pressed and after,
+    high_centi: int = 0  # or be without an order
 
     def place(self, now_ms: int, most_ms: int) -> tuple[int, int]:
-        """Return the lowest and the highest position at which it may be told to stand; a limp joint lies anywhere."""
+        """Return the lowest and the highest position at which it may be told to stand."""
         order = self.order
-        if order is None:
-            return self.least_centi, self.most_centi
-        if isinstance(order, Orient | Press):
+        if order is None or isinstance(order, Orient | Press):
             return self.low_centi, self.high_centi
         passed = (now_ms - self.begin_ms, most_ms - self.begin_most_ms)
         shares = [min(passed_ms, order.time_ms) for passed_ms in passed]
@@ -51,6 +49,14 @@ class JointTrial:
     def driven(self, most_ms: int) -> int:
         """Return for how long its order has driven it, at most."""
         return 0 if self.order is None else min(most_ms - self.begin_most_ms, self.order.time_ms)
+
+    def raise_to(self, other: JointTrial) -> None:
+        """Take over what is more in another one that is like this."""
+        self.moves, self.driven_ms = max(self.moves, other.moves), max(self.driven_ms, other.driven_ms)
+        self.held_ms = max(self.held_ms, other.held_ms)
+        self.fastest_centi_per_s = max(self.fastest_centi_per_s, other.fastest_centi_per_s)
+        if other.lowest_centi is not None and other.highest_centi is not None:
+            self.reach(other.lowest_centi, other.highest_centi)
 
     def reach(self, low_centi: int, high_centi: int) -> None:
         """Count these positions among those that it was told."""

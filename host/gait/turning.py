@@ -8,6 +8,7 @@ of that.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 
 from host.gait.clock import Clock
 from host.gait.diagnostics import Problems
@@ -17,7 +18,7 @@ from host.gait.plan import Move, Op, Orient, Press
 from host.gait.tree import Order, Place
 from host.profile import Profile
 
-Sums = list[tuple[int, int]]
+Sums = list[tuple[int, ...]]
 
 
 class Turning:
@@ -31,7 +32,9 @@ class Turning:
         self.joints: list[JointTrial] = []
         if self._labels:
             limits = profile.servo
-            self.joints = [JointTrial(limits.least_centi, limits.most_centi) for _ in self._labels]
+            least, most = limits.least_centi, limits.most_centi
+            self.joints = [JointTrial(least, most, low_centi=least, high_centi=most) for _ in self._labels]
+        self._best: list[JointTrial] = []
 
     def expect(self, plan: Sequence[Op]) -> None:
         """Nothing that comes changes what is known now."""
@@ -48,6 +51,60 @@ class Turning:
             return
         for joint in chosen:
             self._one(joint, op)
+
+    def abort(self) -> None:
+        """Have every joint stand where it is."""
+        for joint, trial in enumerate(self.joints):
+            self._hold(joint)
+            trial.driven_ms += trial.driven(self._clock.most_ms)
+            trial.low_centi, trial.high_centi = self._place(trial)
+            trial.order = None
+
+    def lose(self) -> None:
+        """Take it that an abort may come at any time: every joint may stand anywhere."""
+        self.joints = [copy(joint) for joint in self._best]
+        for trial in self.joints:
+            trial.order = None
+            trial.low_centi, trial.high_centi = trial.least_centi, trial.most_centi
+
+    def save(self) -> list[JointTrial]:
+        """Return copies of the joints as they are now."""
+        return [copy(joint) for joint in self.joints]
+
+    def restore(self, saved: list[JointTrial]) -> None:
+        """Go on from what was saved."""
+        self.joints = saved
+
+    def raise_to(self, mine: list[JointTrial], other: list[JointTrial]) -> None:
+        """Take over into one save what is more in another that is like it."""
+        for joint, more in zip(mine, other, strict=True):
+            joint.raise_to(more)
+
+    def copies(self, turns: int, sums: Sums, before: Sums) -> Sums:
+        """Return sums after that many more turns, each of which adds what has come since `before`."""
+        pairs = zip(sums, self.sums(), before, strict=True)
+        return [tuple(have + turns * (now - was) for have, now, was in zip(*rows, strict=True)) for rows in pairs]
+
+    def lengthen(self, saved: list[JointTrial], sums: Sums) -> None:
+        """Raise the sums of a save to these."""
+        for joint, (moves, driven_ms) in zip(saved, sums, strict=True):
+            joint.moves, joint.driven_ms = max(joint.moves, moves), max(joint.driven_ms, driven_ms)
+
+    def keep(self) -> None:
+        """Keep what the joints came to on this way, where it is more than on those before."""
+        if self._best:
+            self.raise_to(self._best, self.joints)
+        else:
+            self._best = self.save()
+
+    @property
+    def most(self) -> list[JointTrial]:
+        """Return the most that each joint came to on any way."""
+        return self._best or self.joints
+
+    def key(self) -> tuple[tuple[object, ...], ...]:
+        """Return all but sums that what comes depends on."""
+        return self.state()
 
     def state(self) -> tuple[tuple[object, ...], ...]:
         """Return all that the next turn of a loop depends on, as seen from now."""
@@ -80,7 +137,7 @@ class Turning:
     def _row(self, joint: JointTrial) -> tuple[object, ...]:
         order = joint.order
         if order is None:
-            return (None,)
+            return (None, joint.low_centi, joint.high_centi)
         passed_ms = min(self._clock.now_ms - joint.begin_ms, order.time_ms)
         longest_ms = order.time_ms + self._profile.servo.hold_max_ms + 1
         passed_most_ms = min(self._clock.most_ms - joint.begin_most_ms, longest_ms)
