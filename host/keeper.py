@@ -10,6 +10,7 @@ keeper.recording
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from host.attention import Attention
@@ -23,6 +24,7 @@ from host.slicing import EVERY_MS, Slicing
 
 if TYPE_CHECKING:
     from host.fields import Mesh, Slice
+    from host.gait.plan import Step
 
 
 class Keeper:
@@ -40,6 +42,7 @@ class Keeper:
         drawn: bool = True,
     ) -> None:
         self.recording = Recording(())
+        self.steps: Sequence[Step] = ()  # of the script that runs, for its notes
         self._log = log
         self._observer = observer
         self._scenes = scenes
@@ -67,6 +70,8 @@ class Keeper:
         self.recording.note(record)
         if self._log:
             self._log.record(record)
+            if isinstance(record, Event) and record.event == "noted" and 0 < record.step <= len(self.steps):
+                self._log.note(record, self.steps[record.step - 1])
         if self._observer is None:
             return
         if self._scenes and isinstance(record, Telemetry):

@@ -29,6 +29,7 @@ from host.topics import TOPICS
 
 if TYPE_CHECKING:
     from host.fields import Mesh, Slice
+    from host.gait.plan import Step
 
 CHUNK_BYTES = 64 * 1024
 CHUNK_MS = 1000
@@ -79,6 +80,11 @@ class LogWriter:
         else:
             self._add("stops", record.host_ms, row)
             self._flush(record.host_ms)
+
+    def note(self, event: Event, step: Step) -> None:
+        """Keep what a note of the script says, when the robot has come to it."""
+        row = {"host_ms": event.host_ms, "now_ms": event.now_ms, "step": step.number, "line": step.place.line}
+        self._add("notes", event.host_ms, {**row, "text": step.note})
 
     def link(self, news: LinkNews) -> None:
         """Keep what became of the line, and how the clocks stood."""

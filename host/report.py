@@ -19,6 +19,7 @@ from host.recording import Recording
 from host.records import Event
 from host.robot import ENDS
 from host.run import Ending
+from host.stepreport import CAUGHT, step_lines, steps
 from protocol import causes, program
 
 Fields = dict[str, Any]
@@ -56,7 +57,8 @@ def report(ending: Ending | None, recording: Recording, facts: Facts) -> Fields:
         **{name: facts.info[name] for name in ("robot", "firmware", "protocol", "dictionary", "session")},
         "duration_s": _duration_s(recording),
         **_driven(recording, facts.compiled),
-        "faults": [fault(event, recording, facts.compiled) for event in recording.events if event.code],
+        **steps(recording, facts.compiled, is_done=ending is None or ending.result == "done"),
+        "faults": [fault(event, recording, facts.compiled) for event in _faults(recording.events)],
         "link": facts.statistics,
         "interruptions": [interruption(each, recording) for each in facts.interruptions],
     }
@@ -77,6 +79,12 @@ def _driven(recording: Recording, compiled: Compiled) -> Fields:
         ops = program.disassemble(compiled.code)
         fields["force"]["asked_n"] = max((op[2] / 1000 for op in ops if op[1] == PRESS), default=None)
     return fields
+
+
+def _faults(events: Sequence[Event]) -> list[Event]:
+    """Return the events that have a fault to tell; one that was caught is not told again when the program ends."""
+    caught = next((event.code for event in events if event.event == CAUGHT), None)
+    return [event for event in events if event.code and (event.event != "aborted" or event.code != caught)]
 
 
 def fault(event: Event, recording: Recording, compiled: Compiled) -> Fields:
@@ -110,6 +118,7 @@ def lines(fields: Fields) -> Iterator[str]:
         coil = f", {kind} {item['coil']}" if item["coil"] else ""
         value = f" {amount(item['value'], item['unit'])}" if item["unit"] else ""
         yield f"  fault            {item['code']} at {item['at_s']:.2f} s{where}{coil}: {item['cause']}{value}"
+    yield from step_lines(fields)
     yield from line_lines(fields)
 
 
