@@ -13,7 +13,7 @@ from typing import Protocol
 from host.errors import LinkLost, Refused, RobotFault, ScriptFailed, SoftrigError
 from host.records import Event, Record
 from host.robot import Robot
-from host.stream import Stream
+from host.stream import AT, AT_MS, SLOT, Stream
 from protocol import causes, codes, program
 
 TELEMETRY_MS = 50
@@ -84,20 +84,16 @@ def run(
 
     Coils of `without` are known to be broken: whatever the program orders, they stay cold. With `finely` a robot with a
     load cell tells force and depth a hundred times a second, beside its telemetry. A `streamed` program is sent while
-    it runs. With a `stepper` it stands still at its beginning, and the stepper has it go on.
+    it runs. With a `stepper` it stands still at its beginning until that has it go on.
     """
-    stream = Stream(robot, code) if streamed else None
-    if stream:
-        progress("upload", stream.begin())
-    else:
-        upload(robot, code, progress)
+    stream = announce(robot, code, progress, streamed)
     robot.subscribe(TELEMETRY_MS)
     if finely and robot.profile.load is not None:
         robot.subscribe(FINE_MS, FINE, slot=FINE_SLOT)
     robot.arm(without=without)
     progress("self-test", len(robot.profile.labels))
-    if stream:
-        stream.follow()
+    if stream or stepper:
+        robot.subscribe(AT_MS, [AT], slot=SLOT)
     robot.start(paused=stepper is not None)
     takers = [stream.take] if stream else []
     ending = watch(robot, progress, if_lost or IfLost(), [*takers, stepper] if stepper else takers)
@@ -126,6 +122,16 @@ def outliving(code: bytes) -> bytes:
     read = program.read_header(code[: program.HEADER_BYTES])
     body = code[program.HEADER_BYTES :]
     return program.header(body, read.robot_crc, read.flags | program.OUTLIVES_HOST) + body
+
+
+def announce(robot: Robot, code: bytes, progress: Progress, streamed: bool = False) -> Stream | None:
+    """Send a program to a robot that is connected, of a streamed one as much as it holds; nothing moves."""
+    if not streamed:
+        upload(robot, code, progress)
+        return None
+    stream = Stream(robot, code)
+    progress("upload", stream.begin())
+    return stream
 
 
 def upload(robot: Robot, code: bytes, progress: Progress) -> None:

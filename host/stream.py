@@ -6,6 +6,7 @@ program with its coils off (R37). After an abort or a jump it passes what comes 
 
     stream = Stream(robot, compiled.program)
     stream.begin()                  # as much as there is room for
+    robot.subscribe(AT_MS, [AT], slot=SLOT)
     robot.start()
     for record in robot.watch():
         stream.take(record)         # what was passed makes room for more
@@ -23,7 +24,7 @@ from host.robot import Robot
 from host.robotclock import since
 from protocol import messages, program
 
-AT, SLOT, PERIOD_MS = "program_at", 2, 20
+AT, SLOT, AT_MS = "program_at", 2, 20
 ROOM_LEFT = 4  # frames of the link that other orders may need
 WORD = 1 << 16
 
@@ -48,10 +49,6 @@ class Stream:
         while self._fits():
             self._robot.talk.answer(self._send())
         return self.sent
-
-    def follow(self) -> None:
-        """Have the robot say how far it has come."""
-        self._robot.subscribe(PERIOD_MS, [AT], slot=SLOT)
 
     def take(self, record: Record) -> None:
         """Send what there is room for, as a record from the robot may have made some."""

@@ -8,10 +8,12 @@ from typing import Any, NamedTuple
 
 import click
 
+from host.cli.asking import typed_lines
 from host.cli.options import given_key, if_lost_options, json_option, robot_option, without_option
 from host.cli.output import emit, json_line, note, writing
 from host.cli.progress import shown
 from host.cli.scripts import place, proven
+from host.errors import BadRequest
 from host.gait.compiler import Compiled
 from host.gait.script import load
 from host.keeper import Keeper
@@ -19,7 +21,8 @@ from host.link import open_link, wall_s
 from host.log import LogWriter
 from host.report import Facts, Took, lines, report
 from host.robot import Robot
-from host.run import Ending, IfLost, Progress, outliving, run, upload
+from host.run import Ending, IfLost, Progress, Take, announce, outliving, run
+from host.stepping import Stepper
 from host.view import check_pictures, draw_run
 
 
@@ -31,6 +34,8 @@ from host.view import check_pictures, draw_run
 @click.option("--log", "log_path", type=click.Path(path_type=Path), metavar="FILE.mcap", help="Record everything.")
 @click.option("--plot", "plot_path", type=click.Path(path_type=Path), metavar="FILE.svg", help="Draw the run.")
 @click.option("--from", "begin", type=int, default=1, metavar="STEP", help="Begin with a step that a run told of.")
+@click.option("--stream", is_flag=True, help="Send the program while it runs: it need not fit into the robot.")
+@click.option("--step", "by_hand", is_flag=True, help="Stand still before each step until a key is pressed.")
 @if_lost_options
 @click.option("--outlive", is_flag=True, help="The program goes on should this host die; `softrig attach` takes it up.")
 @without_option
@@ -44,6 +49,8 @@ def command(
     log_path: Path | None,
     plot_path: Path | None,
     begin: int,
+    stream: bool,
+    by_hand: bool,
     if_lost: str,
     patience: int,
     outlive: bool,
@@ -53,6 +60,8 @@ def command(
 
     Ctrl-C sends stop, waits for the robot's answer and says what it was.
     """
+    if stream and outlive:
+        raise BadRequest("--stream and --outlive: a program that is sent while it runs cannot outlive its host")
     tree = load(script)
     address, key = place(tree, robot), given_key()
     if plot_path:
@@ -64,14 +73,17 @@ def command(
             face.connect()
             keeper.know(face.profile.parts)
             keeper.recording.title = f"{Path(script).name} on {address}"
-            compiled, worst = proven(tree, face.profile, params, begin)
+            compiled, worst = proven(tree, face.profile, params, begin, stream)
+            keeper.steps = compiled.steps
             _attach(log, compiled, face, address)
             channels = len(face.profile.labels)
-            with shown(len(compiled.code), channels, worst.longest_ms / 1000, quiet=as_json) as progress:
+            stepper = _stepper(face, compiled, stream) if by_hand and not dry_run else None
+            with shown(len(compiled.code), channels, worst.longest_ms / 1000, quiet=as_json or by_hand) as progress:
                 if outlive:
                     note(f"session {face.talk.session.number}: `softrig attach` takes the program up again")
                 code = outliving(compiled.program) if outlive else compiled.program
-                orders = Orders(dry_run, without, IfLost(if_lost == "stop", patience), finely=log is not None)
+                lost = IfLost(if_lost == "stop", patience)
+                orders = Orders(dry_run, without, lost, log is not None, stream, stepper)
                 ending, took = _run(face, code, orders, progress)
             facts = Facts(compiled, address, face.info(), face.statistics(), link.observer, took, face.interruptions())
             fields = report(ending, keeper.recording, facts)
@@ -94,6 +106,8 @@ class Orders(NamedTuple):
     without: tuple[str, ...]
     if_lost: IfLost
     finely: bool  # for the log
+    streamed: bool
+    stepper: Take | None
 
 
 def _run(face: Robot, code: bytes, orders: Orders, progress: Progress) -> tuple[Ending | None, Took]:
@@ -101,10 +115,16 @@ def _run(face: Robot, code: bytes, orders: Orders, progress: Progress) -> tuple[
     begun = wall_s(), face.link.now_s()
     ending = None
     if orders.dry_run:
-        upload(face, code, progress)
+        announce(face, code, progress, orders.streamed)
     else:
-        ending = run(face, code, progress, orders.without, orders.if_lost, orders.finely)
+        ending = run(face, code, progress, *orders[1:])
     return ending, Took(wall_s() - begun[0], face.link.now_s() - begun[1])
+
+
+def _stepper(face: Robot, compiled: Compiled, streamed: bool) -> Take:
+    """Return what asks the operator about each step, in virtual time as long as it takes."""
+    waits = bool(getattr(face.link, "repeatable", False))
+    return Stepper(face, compiled, typed_lines(waits), note, streamed, waits).take
 
 
 def _attach(log: LogWriter | None, compiled: Compiled, face: Robot, address: str) -> None:
