@@ -89,6 +89,20 @@ class Course:
     hot: dict[int, tuple[str, float, int]] = field(default_factory=dict)  # by step: coil, degC, ms beyond the trip
 
     @property
+    def told_ms(self) -> int:
+        """Return how long it takes without the turns that are not told."""
+        return self.end_ms - sum(gap.end_ms - gap.begin_ms for gap in self.gaps)
+
+    @property
+    def settled_ms(self) -> int:
+        """Return when the last order to joints ends that no other takes the place of."""
+        ends = [0]
+        for i, motion in enumerate(self.motions):
+            if not any(later.mask & motion.mask for later in self.motions[i + 1 :]):
+                ends.append(motion.end_ms)
+        return max(ends)
+
+    @property
     def driven(self) -> list[Track]:
         """Return the coils that have an order."""
         return [track for track in self.tracks if track.orders]

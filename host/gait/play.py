@@ -51,7 +51,7 @@ class Play:
         course, warmth = self.course, self._warmth
         try:
             self._whole(plan)
-            self._pass(max([warmth.busy_ms, *(motion.end_ms for motion in course.motions)]))
+            self._pass(max(warmth.busy_ms, course.settled_ms))
         except Endless:
             course.outcome = GIVEN_UP
         except _Over as over:

@@ -73,6 +73,7 @@ class Warmth:
         self._calls = 0
         for track, degc in zip(course.tracks, coils.degc.tolist(), strict=True):
             track.peak_degc = degc
+            track.curve += [(0, degc)] if every_ms and degc else []
 
     @property
     def busy_ms(self) -> int:
