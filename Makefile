@@ -65,6 +65,7 @@ demo: $(READY)
 docs: $(READY)
 	$(BIN)/python docs/generate.py
 	$(BIN)/softrig run gaits/circular-crawl.gait --robot sim:circular --plot docs/crawl.svg >/dev/null
+	$(BIN)/softrig preview gaits/circular-crawl.gait -o docs/preview.svg
 	for number in 3 9 12 13 14 15 16 nail; do $(BIN)/softrig figure $$number -o docs/figure-$$number.svg || exit 1; done
 
 sensitivity: $(READY)

@@ -39,6 +39,7 @@ COMMANDS = {
     "check": "Prove a script against the limits of its robot.",
     "fmt": "Bring scripts into their one form.",
     "gait": "Scripts as JSON: export, import, schema.",
+    "preview": "Show what a script will do, and how warm its coils get.",
     "run": "Check a script, run it, watch and report.",
     "key": "Make pairing keys.",
     "attach": "Take over the program that runs: watch it to its end, or stop it.",

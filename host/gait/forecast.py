@@ -93,7 +93,7 @@ class Forecast:
     def lines(self) -> Iterator[str]:
         """Yield the peak of each coil as a user reads it."""
         if self.why_not:
-            yield f"  {self.why_not}"
+            yield from [f"  {self.why_not}"] if self.compiled.profile.coil_labels else []
             return
         peaks = self.peaks()
         if peaks:

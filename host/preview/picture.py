@@ -70,6 +70,8 @@ class Sheet:
 
     def __init__(self, ways: Sequence[Course], forecast: Forecast, other: Forecast | None = None) -> None:
         self.ways, self._forecast, self._others = ways, forecast, (other or forecast).compiled
+        self._compares = other is not None
+        self._waiting = ways[0] if self._compares else ways[-1]  # whose waits are shown
         self._drawing = Drawing(WIDTH)
         self._times = times_of(ways, LEFT, WIDTH - LEFT - RIGHT)
         self._y = 0.0
@@ -87,13 +89,13 @@ class Sheet:
         """Draw lanes, and the strips above and below them."""
         drawing, times, compiled = self._drawing, self._times, self._forecast.compiled
         flags = laid_flags(times, compiled, self.ways[0])
-        rows = len(self.ways) + (1 + max(flag.row for flag in flags) if flags else 0) + bool(self.ways[-1].pauses)
+        rows = len(self.ways) + (1 + max(flag.row for flag in flags) if flags else 0) + bool(self._waiting.pauses)
         top = self._y + rows * ROW
         foot = self._lanes(top, rights)
         strip = draw_flags(drawing, flags, self._y, foot)
         if len(self.ways) > 1:
             strip = draw_lines(drawing, times, strip, strip + ROW, self._others, self.ways[1], "line, dashed")
-        strip = draw_waits(drawing, times, strip, foot, self.ways)
+        strip = draw_waits(drawing, times, strip, foot, self._waiting)
         draw_lines(drawing, times, strip, foot, compiled, self.ways[0])
         draw_gaps(drawing, times, top, foot, self.ways[-1])
         self._y = draw_time(drawing, times, foot + 2, self.ways[-1])
@@ -152,13 +154,13 @@ class Sheet:
     def _marks(self) -> list[tuple[str, str]]:
         """Return the kinds of marks in this picture, each with what it means."""
         bars = [bar for course in self.ways for track in course.tracks for bar in track.bars]
-        pauses, motions = self.ways[-1].pauses, [motion for course in self.ways for motion in course.motions]
+        pauses, motions = self._waiting.pauses, [motion for course in self.ways for motion in course.motions]
         modelled = bool(bars) and not self._forecast.why_not
         marks = [
             ("duty", "duty of a coil (full height: 100 %)", bool(bars)),
             ("kept", "kept near a temperature", any(bar.keep_decidegc for bar in bars)),
             ("heat", "predicted temperature", modelled),
-            ("band", "between both ways", modelled and len(self.ways) > 1),
+            ("band", "difference" if self._compares else "between both ways", modelled and len(self.ways) > 1),
             ("trip", "the robot trips", modelled),
             ("joint", "target of a joint, an object or a force", bool(motions)),
             ("guess", "on its way from an unknown place", self._guessed()),

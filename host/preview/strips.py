@@ -86,9 +86,8 @@ def draw_flags(drawing: Drawing, flags: Sequence[Flag], y: float, foot: float) -
     return y + (1 + max(flag.row for flag in flags)) * ROW
 
 
-def draw_waits(drawing: Drawing, times: Times, y: float, foot: float, ways: Sequence[Course]) -> float:
+def draw_waits(drawing: Drawing, times: Times, y: float, foot: float, course: Course) -> float:
     """Draw each wait from its begin to its end, and open where it may be over at any time until then."""
-    course = ways[-1]
     if not course.pauses:
         return y
     drawing.text(8, y + 9, "wait", "quiet", 9.5)

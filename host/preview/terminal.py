@@ -37,7 +37,8 @@ def print_timeline(forecast: Forecast, console: Console | None = None) -> None:
             console.print(Text(f"{way}: {told}", style="bold"))
         for line in Timeline(forecast, course, console).lines():
             console.print(line, no_wrap=True, overflow="crop")
-    for remark in [forecast.why_not] if forecast.why_not else forecast.remarks():
+    unknown = [forecast.why_not] if forecast.compiled.profile.coil_labels and forecast.why_not else []
+    for remark in [*unknown, *forecast.remarks()]:
         console.print(Text(printable(remark.strip())))
 
 
