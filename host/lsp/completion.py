@@ -13,7 +13,7 @@ from lark.exceptions import LarkError
 from host.gait import sources, units
 from host.gait.parser import grammar
 from host.gait.subjects import QUANTIFIERS
-from host.gait.syntax import FORMS, KEYWORDS
+from host.gait.syntax import FORMS, KEYWORDS, NAMES
 from host.lsp import words
 from host.lsp.names import here
 from host.lsp.view import View
@@ -111,6 +111,8 @@ def _files(folder: str, own: str) -> list[str]:
 
 def _words(cursor: _Cursor) -> Iterator[Item]:
     """Yield the words of the language that may come next; a clause that is there already is left out."""
+    if NAMES[1] <= cursor.accepts:  # a name of one's own
+        return
     there = {str(token) for token in cursor.tokens}
     for word in KEYWORDS if cursor.first != "ROBOT" else ():
         if word.upper() in cursor.accepts and not (cursor.tokens and word in there):

@@ -41,14 +41,15 @@ class Desk:
         self._robot = robot
         self._judged: dict[str, _Judged] = {}
         self._names: dict[str, Index] = {}
+        self._scripts: dict[str, tuple[int, Script]] = {}
 
     def address(self, path: str) -> str | None:
         """Return the address of the robot that a script is for, or None when it needs none or names none."""
-        return self._address(read_script(path, self.texts.read))
+        return self._address(self._read(path))
 
     def judge(self, path: str, robot: Profile | str | None) -> set[str]:
         """Look at a script anew; return the paths of the texts of which something else may be wrong now."""
-        script = read_script(path, self.texts.read)
+        script = self._read(path)
         before = self._judged.get(path)
         self._judged[path] = _Judged(script, judge(script, robot))
         return {path, *_about(self._judged[path]), *(_about(before) if before else ())}
@@ -68,6 +69,11 @@ class Desk:
         several = (judged.verdict.found for judged in self._judged.values())
         return in_order(item for found in several for item in found if item.place.file == path)
 
+    def renew(self) -> None:
+        """Take it that files on disk are others now, and that robots can be reached again."""
+        self.texts.state += 1
+        self.robots.forget_lost()
+
     def unasked(self, path: str) -> Unasked | None:
         """Return why the limits of this script's robot are not known."""
         return self._judged[path].verdict.unasked if path in self._judged else None
@@ -82,12 +88,19 @@ class Desk:
     def view(self, path: str) -> View:
         """Return a text as it is now, within the script that it belongs to."""
         main = path
-        script = read_script(path, self.texts.read)
+        script = self._read(path)
         if is_library(script):
             main = next((each for each in self.depending(path) if each != path), path)
-            script = read_script(main, self.texts.read)
+            script = self._read(main)
         profile = self.robots.known(self._address(script))
         return View(path, self.lines(path), script, self._index(main, script), profile, self.found(path))
+
+    def _read(self, path: str) -> Script:
+        """Return a script as it is now, read once for each state of the texts."""
+        state = self.texts.state
+        if path not in self._scripts or self._scripts[path][0] != state:
+            self._scripts[path] = state, read_script(path, self.texts.read)
+        return self._scripts[path][1]
 
     def _address(self, script: Script) -> str | None:
         try:
@@ -97,7 +110,8 @@ class Desk:
 
     def _index(self, path: str, script: Script) -> Index:
         """Return the names of a script, or of its last state that could be read."""
-        if script.main.readable or path not in self._names:
+        last = self._names.get(path)
+        if last is None or (script.main.readable and last.script is not script):
             self._names[path] = Index(script)
         return self._names[path]
 

@@ -38,6 +38,7 @@ class Index:
     """All names of a script and of what it includes."""
 
     def __init__(self, script: Script) -> None:
+        self.script = script
         self.symbols: list[Symbol] = []
         self._uses: list[tuple[Place, Symbol]] = []
         self._files = {file.name: file for file in script.files}

@@ -51,8 +51,8 @@ class GaitServer(LanguageServer):
             task.add_done_callback(self._tasks.discard)
 
     def look_at_all(self) -> None:
-        """Let every open script be looked at, and robots that could not be reached be asked again."""
-        self.desk.robots.forget_lost()
+        """Let every open script be looked at again, for what may be another on disk, or reached by now."""
+        self.desk.renew()
         for path in self.desk.texts.paths():
             self.look(path)
 

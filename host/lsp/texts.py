@@ -39,15 +39,18 @@ class Texts:
 
     def __init__(self) -> None:
         self._open: dict[str, Text] = {}
+        self.state = 0  # another number as soon as any text may be another
 
     def put(self, uri: str, source: str, version: int) -> str:
         """Keep the newest state of a text and return its path."""
         path = path_of(uri)
+        self.state += 1
         self._open[path] = Text(uri, source, version)
         return path
 
     def drop(self, uri: str) -> str:
         """Forget a text that the editor has closed and return its path."""
+        self.state += 1
         self._open.pop(path_of(uri), None)
         return path_of(uri)
 

@@ -57,13 +57,14 @@ class View:
         if beside:
             return _bare(beside[1])
         above: list[str] = []
-        while at > 0 and lines[at - 1].lstrip().startswith("#"):
+        while 0 < at <= len(lines) and lines[at - 1].lstrip().startswith("#"):
             at -= 1
             above.insert(0, _bare(lines[at].strip()))
         return "\n".join(above)
 
     def _lines(self, symbol: Symbol) -> tuple[str, ...]:
-        return next((file.lines for file in self.script.files if file.name == symbol.place.file), ())
+        """Return the lines among which a name was declared, which may be those of an earlier state."""
+        return next((file.lines for file in self.names.script.files if file.name == symbol.place.file), ())
 
 
 def _code(lines: tuple[str, ...]) -> str:

@@ -1,0 +1,223 @@
+"""What the language server knows, asked without a process: offers, what is pointed at, names, and nonsense."""
+
+import random
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from lsprotocol import types
+from pygls.exceptions import JsonRpcInvalidParams
+from pygls.workspace import PositionCodec
+
+from host.gait import sources
+from host.gait.syntax import CLAUSES, FORMS
+from host.lsp import words
+from host.lsp.answers import Answers
+from host.lsp.completion import complete
+from host.lsp.desk import Desk
+from host.lsp.hover import hover
+from host.lsp.outline import declaration, outline
+from tests.gait_scripts import ball_robot, round_robot
+
+ROOT = Path(__file__).parents[1]
+URI = (ROOT / "gaits" / "new.gait").as_uri()
+HEAD = """gait 1
+robot round
+param duty = 60 % [5 % .. 90 %]  # how much
+include "lib/lift.gait"
+circle ring = A B C
+# Both at once.
+def both(a, b):
+    fire $a $b at $duty for 600 ms
+"""
+FIRST_FREE = HEAD.count("\n") + 1
+NONSENSE = ["\t", "\r", "\r\n", "\x00", "😀", "$", '"', "..", "(", "[", ":", "\u2028", "\ud800", "\n", "    ", "else "]
+NONSENSE += ["wait until ", "for ", "sym ", "1e9", "hold ", "on fault:", "label ", "def f(", "\ufeff", "#"]
+
+
+class Known:
+    """Robots of which each is the same."""
+
+    def __init__(self, profile):
+        self.profile = profile
+
+    def ask(self, address):
+        return self.profile
+
+    known = ask
+
+    def names(self):
+        return ["round"]
+
+    def forget_lost(self):
+        pass
+
+
+def desk_with(text, profile=None):
+    desk = Desk(Known(profile or round_robot()))
+    path = desk.texts.put(URI, text, 1)
+    desk.judge(path, desk.robots.profile)
+    return desk, path
+
+
+def offers(line, text=HEAD, profile=None):
+    desk, path = desk_with(text + line, profile)
+    view = replace(desk.view(path), robots=("round",))
+    return [item.text for item in complete(view, text.count("\n") + 1, len(line))]
+
+
+def shown(line, column, text=HEAD, profile=None):
+    desk, path = desk_with(text + line, profile)
+    return hover(desk.view(path), text.count("\n") + 1, column)
+
+
+@pytest.mark.parametrize(
+    ("line", "some"),
+    [
+        ("", ["fire", "wait", "repeat", "both", "lift"]),
+        ("fire ", ["A", "front", "at", "for", "until", "$duty"]),
+        ("fire A at ", ["$duty", "$clear"]),
+        ("fire A at 60 ", ["%", "for"]),
+        ("fire A at 60 % f", ["for", "until"]),
+        ("    fire $", ["$a", "$b", "$duty"]),
+        ("wait until A.", ["temperature", "heat", "resistance"]),
+        ("wait until A.temperature > 95 ", ["C", "timeout", "else"]),
+        ("wait 5", ["ms", "s"]),
+        ("guard ", ["any", "all", "supply", "board", "A"]),
+        ("guard supply.", ["current", "voltage"]),
+        ("robot ", ["round"]),
+        ("let next = ", ["ring"]),
+        ("let next = ring[", ["down"]),
+        ("both(", ["A", "front", "$duty"]),
+        ("for c in ", ["A", "even"]),
+        ("on ", ["fault"]),
+        ('include "lib/', ["lib/lift.gait", "lib/push.gait"]),
+        ('note "at $d', ["$duty"]),
+    ],
+)
+def test_what_may_come_next_is_offered(line, some):
+    assert set(some) <= set(offers(line))
+
+
+@pytest.mark.parametrize(
+    "line", ["# fire ", "param ", "label ", "fire A at at ", 'note "fire ', "fire A at 60 % for 2 s # "]
+)
+def test_where_nothing_of_the_script_can_stand_nothing_is_offered(line):
+    assert offers(line) == []
+
+
+def test_labels_are_offered_only_further_down():
+    text = HEAD + "label early\nwait until A.temperature > 95 C timeout 4 s else \nlabel late\n"
+    desk, path = desk_with(text)
+
+    found = complete(desk.view(path), FIRST_FREE + 1, 49)
+
+    assert [item.text for item in found] == ["continue", "abort", "late"]
+
+
+def test_arguments_are_offered_only_in_their_own_def():
+    assert not {"$a", "$b"} & set(offers("fire $"))
+
+
+def test_names_are_still_offered_while_the_text_cannot_be_read():
+    desk, path = desk_with(HEAD)
+    desk.view(path)
+    desk.texts.put(URI, HEAD + "\tfire $", 2)
+
+    assert "$duty" in [item.text for item in complete(desk.view(path), FIRST_FREE, 7)]
+
+
+@pytest.mark.parametrize(
+    ("line", "column", "said"),
+    [
+        ("fire A at 60 % for 600 ms", 5, "coil `A`: channel 0, in `front`, `even`\n\nduty 0.1 .. 90 %"),
+        ("fire front at 60 % for 600 ms", 7, "group `front`: A B"),
+        ("fire A at 60 % for 600 ms", 10, ""),
+        ("fire A at 60 % for 600 ms", 7, "duty 0.1 .. 90 %"),
+        ("fire A at 60 % for 600 ms", 16, "one order at most 4 s"),
+        ("fire A at 60 % for 600 ms until 95 C", 27, "below the robot's own trip at 120 C"),
+        ("fire A at $duty for 600 ms", 12, "param duty = 60 % [5 % .. 90 %]\n```\n\nhow much"),
+        ("both(A, B)", 2, "def both(a, b):\n```\n\nBoth at once."),
+        ("robot round", 8, "coils: A B C D E F G H"),
+        ("wait 500 ms", 10, "`ms`: time"),
+        ("guard any.temperature > 95 C", 12, "estimated temperature"),
+        ("fire A at 60 for 600 ms", 11, "**E120** A number has no unit."),
+        ("repeat 3:", 2, "at most 8 deep"),
+    ],
+)
+def test_hover_says_what_a_word_stands_for_and_how_far_it_goes(line, column, said):
+    assert said in shown(line, column)
+
+
+def test_the_outline_holds_what_a_text_declares():
+    desk, path = desk_with(HEAD + "label late\n")
+
+    entries = outline(desk.view(path))
+
+    assert [(each.kind, each.name) for each in entries] == [
+        ("param", "duty"), ("circle", "ring"), ("def", "both"), ("label", "late"),
+    ]  # fmt: skip
+    assert entries[2].last_line == FIRST_FREE - 1
+
+
+@pytest.mark.parametrize(
+    ("line", "column", "file", "at"),
+    [("both(A, B)", 1, "new.gait", 7), ("lift(2 mm)", 1, "lift.gait", 18), ("wait $duty", 7, "new.gait", 3)],
+)
+def test_a_name_leads_to_its_declaration(line, column, file, at):
+    desk, path = desk_with(HEAD + line)
+
+    place = declaration(desk.view(path), FIRST_FREE, column)
+
+    assert (Path(place.file).name, place.line) == (file, at)
+
+
+def test_an_include_leads_to_its_file():
+    desk, path = desk_with(HEAD)
+
+    assert declaration(desk.view(path), 4, 12).file == str(ROOT / "gaits" / "lib" / "lift.gait")
+
+
+@pytest.mark.parametrize(
+    ("name", "said"), [("both", None), ("ring", "declared already"), ("fire", "word of the language"), ("2", "no name")]
+)
+def test_a_new_name_must_be_free_and_a_name(name, said):
+    desk, _ = desk_with(HEAD)
+    asked = types.RenameParams(types.TextDocumentIdentifier(URI), types.Position(2, 7), name)
+
+    if said is None:
+        assert Answers(desk, PositionCodec()).renamed(asked).changes
+    else:
+        with pytest.raises(JsonRpcInvalidParams, match=said):
+            Answers(desk, PositionCodec()).renamed(asked)
+
+
+def test_every_word_and_quantity_of_the_language_has_its_sentence():
+    quantities = {**sources.COIL, **sources.JOINT, **sources.CELL, **sources.SUPPLY, **sources.WHOLE}
+
+    assert set(words.STATEMENTS) == set(FORMS)
+    assert set(words.CLAUSES) == set(CLAUSES)
+    assert set(words.QUANTITIES) == {*quantities, "down"}
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_no_text_and_no_cursor_brings_the_server_down(seed):
+    draw = random.Random(seed)
+    text = list(draw.choice(sorted(ROOT.glob("gaits/**/*.gait"))).read_text(encoding="utf-8"))
+    for _ in range(8):
+        at = draw.randrange(len(text))
+        text[at : at + draw.randrange(20)] = draw.choice(NONSENSE)
+    desk, path = desk_with(HEAD, draw.choice([round_robot(), ball_robot()]))
+    desk.view(path)
+    desk.texts.put(URI, "".join(text), 2)
+    desk.judge(path, desk.robots.profile)
+
+    answers = Answers(desk, PositionCodec(draw.choice(["utf-8", "utf-16", "utf-32"])))
+    asked = {"text_document": types.TextDocumentIdentifier(URI)}
+    for _ in range(10):
+        asked["position"] = types.Position(draw.randrange(40), draw.randrange(60))
+        answers.completed(types.CompletionParams(**asked), ["round"])
+        answers.hover(types.HoverParams(**asked))
+        answers.definition(types.DefinitionParams(**asked))
+    assert isinstance(answers.outline(URI), list)
+    answers.formatted(URI)
