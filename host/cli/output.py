@@ -51,6 +51,11 @@ def json_line(fields: Any) -> str:
 
 def error_line(error: SoftrigError) -> str:
     """Return an error as a line of JSON."""
+    return json_line(error_fields(error))
+
+
+def error_fields(error: SoftrigError) -> dict[str, Any]:
+    """Return an error as the fields of an object."""
     fields: dict[str, Any] = {"error": type(error).__name__, "message": str(error), "exit_code": error.exit_code}
     row = getattr(error, "row", None)
     if row is not None:
@@ -58,7 +63,7 @@ def error_line(error: SoftrigError) -> str:
     diagnostics = getattr(error, "diagnostics", None)
     if diagnostics:
         fields["diagnostics"] = [item.as_dict() for item in diagnostics]
-    return json_line(fields)
+    return fields
 
 
 def _number(match: re.Match[str]) -> str:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from host.gait.coiltrial import full_ma
 from host.gait.diagnostics import Problems
 from host.gait.jointunits import UNITS
 from host.gait.plan import Fire, Guard, Loop, Move, OnFault, Op, Press, Wait
@@ -84,6 +85,14 @@ def _check_fire(op: Fire, profile: Profile, problems: Problems) -> None:
     if op.time_ms > limits.hold_max_ms:
         message = f"an order of {op.time_ms} ms, at most {limits.hold_max_ms} ms"
         problems.add(_clause(op, "for"), "E302", message)
+    count, supply = op.mask.bit_count() if op.kept is None else 1, profile.supply
+    current_ma = count * -(-full_ma(profile.supply_mv, limits) * op.duty_permille // 1000)
+    if count > supply.at_once_max:
+        message = f"{count} coils would be on at once, at most {supply.at_once_max}"
+        problems.add(op.node.place, "E304", message)
+    if current_ma > supply.current_max_ma:
+        message = f"the supply would give {current_ma} mA, at most {supply.current_max_ma} mA"
+        problems.add(op.node.place, "E305", message)
     if op.cutoff_decidegc:
         _check_trip(op.cutoff_decidegc, _clause(op, temperature), profile, problems)
 

@@ -18,7 +18,7 @@ from math import ceil
 
 from host.gait import tree
 from host.gait.clock import Clock
-from host.gait.coiltrial import STEP_MS, CoilTrial, energy_uj, heat_uj
+from host.gait.coiltrial import STEP_MS, CoilTrial, energy_uj, full_ma, heat_uj
 from host.gait.diagnostics import Problems
 from host.gait.plan import Aim, Fire, Op, Wait, walk
 from host.profile import Profile
@@ -44,7 +44,7 @@ class Heating:
         self._all += [CoilTrial() for _ in range(program.AIMS_MAX)]
         supply_mv, coil_mohm = profile.supply_mv, profile.coil.resistance_mohm
         loop_mohm = coil_mohm + profile.coil.wiring_mohm
-        self.full_ma = ceil(Fraction(1000 * supply_mv, loop_mohm))
+        self.full_ma = full_ma(supply_mv, self._limits)
         self.full_uw = ceil(Fraction(1000 * supply_mv * supply_mv * coil_mohm, loop_mohm * loop_mohm))
 
     @property
