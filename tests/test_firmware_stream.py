@@ -48,9 +48,9 @@ def test_a_streamed_program_keeps_the_pace_of_an_uploaded_one():
     there, here = Rig(), Rig()
     run_program(there, code)
     stream = Stream(here)
-    stream.send(code[:54])
+    stream.send(code[:57])
     stream.start()
-    stream.send(code[54:])
+    stream.send(code[57:])
     there.run(400)
     here.run(400)
 
