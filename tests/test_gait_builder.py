@@ -8,7 +8,7 @@ import pytest
 from host.gait import builder
 from host.gait.builder import Gait
 from host.gait.parser import parse_file
-from tests.gait_scripts import HEAD, compiled, round_robot
+from tests.gait_scripts import HEAD, circular, compiled, round_robot
 
 STATEMENTS = [
     (lambda gait: gait.param("hold", "15 %"), "param hold = 15 %"),
@@ -150,6 +150,17 @@ def test_a_script_is_checked_against_a_profile_or_a_robot_at_an_address():
     assert not Gait("round").fire("A", duty=95, ms=600).check(round_robot()).sound
     with pytest.raises(ValueError, match=r"script\.gait:3:6: error E1"):
         Gait("round").fire("Z", duty=60, ms=600).check(round_robot())
+
+
+def test_a_notebook_shows_a_checked_script_as_a_picture_until_it_changes():
+    gait = Gait("circular").fire("A", duty=60, ms=600)
+    assert gait._repr_svg_() is None
+
+    gait.check(circular())
+    shown = gait._repr_svg_()
+
+    assert shown.startswith("<svg")
+    assert gait.wait(s=1)._repr_svg_() is None
 
 
 def test_a_script_is_saved_with_what_it_includes_beside_it(tmp_path):

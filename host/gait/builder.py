@@ -28,22 +28,36 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from fractions import Fraction
 from pathlib import Path
-from typing import Self
+from typing import NamedTuple, Self
 
 from host.gait import phrases
 from host.gait import tree as trees
 from host.gait.checker import check
 from host.gait.compiler import Compiled, compile_script
+from host.gait.forecast import foretell
 from host.gait.formatting import replace_file
 from host.gait.gathering import NAME, Gathering, plain
-from host.gait.layout import NOWHERE
+from host.gait.layout import NOWHERE, Sheet
 from host.gait.phrases import Value
 from host.gait.script import Script, loads
 from host.gait.verdict import Report
 from host.gait.writer import statement as head
 from host.link import open_link
+from host.preview.picture import picture
 from host.profile import Profile
 from host.robot import Robot
+
+POINTS = 900  # of a curve
+LEAST_MS = 10  # from one to the next
+
+
+class _Checked(NamedTuple):
+    """What was checked, for which robot, and how long it takes at most."""
+
+    sheet: Sheet
+    compiled: Compiled
+    address: str
+    longest_ms: int
 
 
 class Gait(Gathering):
@@ -51,6 +65,7 @@ class Gait(Gathering):
 
     def __init__(self, robot: str) -> None:
         super().__init__()
+        self._checked: _Checked | None = None
         self._put(trees.Gait(Fraction(1), NOWHERE))
         self._put(phrases.statement(f"robot {robot}", trees.Robot, "robot"))
 
@@ -263,15 +278,29 @@ class Gait(Gathering):
             return compile_script(self.script(path), profile, params)
 
     def check(self, robot: Profile | str, params: Sequence[str] = (), path: str | Path = NAME) -> Report:
-        """Return the worst case on a robot, given by its profile or its address, and each limit that it breaks."""
+        """Return the worst case on a robot, given by its profile or its address, and each limit that it breaks.
+
+        From then on a notebook shows the script as a picture: what each coil does, and how warm it gets.
+        """
         profile = robot if isinstance(robot, Profile) else _profile(robot)
-        return check(self.compile(profile, params, path))
+        compiled = self.compile(profile, params, path)
+        report = check(compiled)
+        address = f"sim:{profile.robot}" if isinstance(robot, Profile) else robot
+        self._checked = _Checked(self.sheet(), compiled, address, report.longest_ms)
+        return report
 
     def save(self, path: str | Path) -> Path:
         """Write the script to a file and return its path."""
         target = Path(path)
         replace_file(target, self.text())
         return target
+
+    def _repr_svg_(self) -> str | None:
+        """Return the picture of the script as it was checked last; None when it was not, or has grown since."""
+        checked = self._checked
+        if checked is None or self.is_open or checked.sheet != self.sheet():
+            return None
+        return picture(foretell(checked.compiled, checked.address, max(LEAST_MS, checked.longest_ms // POINTS)))
 
 
 def _some(coils: tuple[str, ...]) -> tuple[trees.Coil, ...]:

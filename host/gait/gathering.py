@@ -60,13 +60,18 @@ class Gathering:
         self._blocks[-1].waiting.append(BLANK)
         return self
 
+    @property
+    def is_open(self) -> bool:
+        """Return whether a block is open."""
+        return len(self._blocks) > 1
+
     def line(self) -> str:
         """Return the last statement as it is written; of a block its head."""
         return head(self._blocks[-1].items[-1].node)
 
     def sheet(self) -> Sheet:
         """Return the statements with their comments; ValueError while a block is open."""
-        if len(self._blocks) > 1:
+        if self.is_open:
             raise ValueError("a block is open: a script is whole after its `with`")
         block = self._blocks[0]
         return Sheet(tuple(block.items), tidy(tuple(block.waiting), False, True))
@@ -77,8 +82,8 @@ class Gathering:
             return made(self.sheet(), NAME)
 
     def __repr__(self) -> str:
-        """Return the text, or what has been written of it."""
-        return "\n".join(head(item.node) for item in self._blocks[0].items) if len(self._blocks) > 1 else self.text()
+        """Return the text; while a block is open, the lines before it."""
+        return "\n".join(head(item.node) for item in self._blocks[0].items) if self.is_open else self.text()
 
     def _put(self, node: tree.Statement) -> Self:
         self._blocks[-1].put(Item(node))
