@@ -9,44 +9,20 @@ that follow each other are aligned, and so are comments beside statements that s
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from fractions import Fraction
-from itertools import groupby
 from typing import Any
 
 from host.gait import tree
+from host.gait.columns import Row, aligned
 from host.gait.layout import Item, Sheet
 
-INDENT = 4
-APART = 2  # spaces before a comment beside a statement
-NEAR = 3  # lines from one such comment to the next, to be aligned
-UNEVEN = 12  # columns that statements with aligned comments may differ by
 BINDS = {"+": 1, "-": 1, "*": 2, "/": 2}
-
-
-@dataclass
-class _Row:
-    """A line of one block: columns that are aligned with those of its neighbours, and a comment beside them."""
-
-    block: int
-    depth: int
-    cells: list[str]
-    comment: str = ""
-    apart: bool = False  # no statement: a comment of its own, or a blank line
-
-    @property
-    def code(self) -> str:
-        """Return the line as it stands, without the comment beside it."""
-        return " " * INDENT * self.depth * bool(self.cells) + " ".join(self.cells)
 
 
 def written(sheet: Sheet) -> str:
     """Return the text of a layout; it ends with a line end unless it is empty."""
     rows = [*_rows(sheet.items, 0), *_apart(sheet.after, 0, 0)]
-    for _, run in groupby(rows, _kind):
-        _align(list(run))
-    gaps = _gaps(rows)
-    return "".join(f"{row.code}{' ' * gap}{row.comment}\n" for row, gap in zip(rows, gaps, strict=True))
+    return "".join(f"{line}\n" for line in aligned(rows))
 
 
 def statement(node: tree.Statement) -> str:
@@ -112,53 +88,16 @@ def _bound(node: tree.Expression, binds: int) -> str:
     return f"({text})" if isinstance(node, tree.Binary) and BINDS[node.operator] < binds else text
 
 
-def _rows(items: tuple[Item, ...], depth: int, block: int = 0) -> Iterator[_Row]:
+def _rows(items: tuple[Item, ...], depth: int, block: int = 0) -> Iterator[Row]:
     for item in items:
         yield from _apart(item.before, depth, block)
-        yield _Row(block, depth, _cells(item.node), item.beside)
+        yield Row(block, depth, _cells(item.node), item.beside)
         yield from _rows(item.body, depth + 1, id(item))
         yield from _apart(item.after, depth + 1, id(item))
 
 
-def _apart(lines: tuple[str, ...], depth: int, block: int) -> Iterator[_Row]:
-    return (_Row(block, depth, [line] if line else [], apart=True) for line in lines)
-
-
-def _align(run: list[_Row]) -> None:
-    """Give the columns of neighbouring lines one width, but for the last column of each line."""
-    for column in range(2):
-        wider = [row for row in run if len(row.cells) > column + 1]
-        width = max((len(row.cells[column]) for row in wider), default=0)
-        for row in wider:
-            row.cells[column] = row.cells[column].ljust(width)
-
-
-def _gaps(rows: list[_Row]) -> list[int]:
-    """Return how many blanks stand between the code of each row and the comment beside it."""
-    gaps = [0] * len(rows)
-    run: list[int] = []
-    for at, row in enumerate(rows):
-        if row.apart and row.cells:
-            run = []
-        if not row.comment:
-            continue
-        run = [*run, at] if _aligned(rows, run, at) else [at]
-        column = APART + max(len(rows[each].code) for each in run)
-        for each in run:
-            gaps[each] = column - len(rows[each].code)
-    return gaps
-
-
-def _aligned(rows: list[_Row], run: list[int], at: int) -> bool:
-    """Return whether the comment of a row goes on with a run of them."""
-    if not run or at - run[-1] > NEAR or _kind(rows[at]) != _kind(rows[run[0]]):
-        return False
-    widths = [len(rows[each].code) for each in (*run, at)]
-    return len(rows[at].cells) > 1 or max(widths) - min(widths) <= UNEVEN
-
-
-def _kind(row: _Row) -> tuple[int, bool]:
-    return row.block, len(row.cells) > 1
+def _apart(lines: tuple[str, ...], depth: int, block: int) -> Iterator[Row]:
+    return (Row(block, depth, [line] if line else [], apart=True) for line in lines)
 
 
 def _cells(node: tree.Statement) -> list[str]:
