@@ -59,12 +59,12 @@ def _facing(node: tree.Facing, scope: Scope) -> program.Condition | None:
 
 def _whole(node: tree.Reading, scope: Scope) -> Sources:
     """Return what can be asked about the robot as a whole; what this one cannot tell is reported."""
-    profile, quantity = scope.profile, node.quantity.text
+    quantity = node.quantity.text
     if quantity in sources.OBJECT:
         scope.watches(node.place)
     elif quantity in sources.LOAD:
         scope.weighs(node.place)
-    elif quantity not in sources.CLOCK and (quantity in sources.BODY or not (profile.camera or profile.load)):
+    elif quantity in sources.BODY:
         scope.sees(node.place)
     return sources.WHOLE
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from host.gait import tree
 from host.gait.diagnostics import Problems
+from host.gait.script import walk
 from protocol import program
 
 CHOICES = {"abort": program.ABORT, "continue": program.CONTINUE}
@@ -18,6 +19,7 @@ class Labels:
     numbers: dict[str, int] = field(default_factory=dict)
     passed: set[str] = field(default_factory=set)
     chosen: dict[str, set[str]] = field(default_factory=dict)  # names chosen whenever a wait goes on there
+    misplaced: set[str] = field(default_factory=set)  # labels within blocks, which are reported where they stand
 
     def jump(self, name: str, chosen: set[str]) -> int:
         """Return how a wait goes on at a label, with what the robot has chosen by then."""
@@ -32,7 +34,7 @@ class Labels:
 
 def labelled(statements: tuple[tree.Statement, ...], problems: Problems) -> Labels:
     """Return the labels at the top level of a script, numbered in the order of the text."""
-    labels = Labels()
+    labels = Labels(misplaced={node.name.text for node in walk(statements) if isinstance(node, tree.Label)})
     for node in statements:
         if isinstance(node, tree.Label):
             name = node.name.text

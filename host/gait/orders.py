@@ -115,7 +115,7 @@ def _otherwise(node: tree.WaitUntil, scope: Scope) -> int | None:
         scope.problems.add(name.place, "E173", f"label `{name.text}` is not further on", help)
     elif name.text in labels.numbers:
         return labels.jump(name.text, set(scope.chosen) - scope.skipped)
-    elif name.text not in scope.unread:
+    elif name.text not in scope.unread | labels.misplaced:
         help = did_you_mean(name.text, [*CHOICES, *labels.numbers]) or "write `abort`, `continue`, or a label"
         scope.problems.add(name.place, "E172", f"there is no label `{name.text}`", help)
     return None

@@ -11,7 +11,7 @@ from dataclasses import replace
 from typing import Any, Protocol
 
 from host.gait.clock import Clock
-from host.gait.coiltrial import CoilTrial
+from host.gait.coiltrial import STEP_MS, CoilTrial
 from host.gait.diagnostics import Problems
 from host.gait.heating import Heating
 from host.gait.jointtrial import JointTrial
@@ -219,6 +219,7 @@ class Trial:
             part.keep()
         if label != program.ON_FAULT:
             least_ms = self.clock.least_ms
+            least_ms -= least_ms % STEP_MS if tail_ms else 0  # an order may end that much sooner than its whole steps
             self._shortest_ms = least_ms if self._shortest_ms is None else min(self._shortest_ms, least_ms)
 
 
