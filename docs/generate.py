@@ -12,7 +12,18 @@ from typing import Any
 
 import click
 
-from docs import cheader, cvectors, dbc, dictionary, faultspage, hardwarepage, protocolpage, schematic, vectors
+from docs import (
+    cheader,
+    cvectors,
+    dbc,
+    dictionary,
+    faultspage,
+    gaitpage,
+    hardwarepage,
+    protocolpage,
+    schematic,
+    vectors,
+)
 from host import errors
 from host.cli import main as softrig
 from host.cli.explain import JOINTS
@@ -61,6 +72,7 @@ def pages() -> Iterator[tuple[str, str]]:
     yield "docs/protocol.md", MADE + protocol_page()
     yield "docs/codes.md", MADE + codes_page()
     yield "docs/faults.md", MADE + faults_page()
+    yield "docs/gait-reference.md", MADE + gait_page()
     yield "docs/limits.md", MADE + limits_page()
     yield "docs/commands.md", MADE + commands_page()
     yield "docs/hardware.md", MADE + hardware_page()
@@ -107,6 +119,11 @@ def hardware_page() -> str:
 def faults_page() -> str:
     """Return what can go wrong on the bench and what is promised then."""
     return (TEMPLATES / "faults.md").read_text(encoding="utf-8").format(**faultspage.fields(table))
+
+
+def gait_page() -> str:
+    """Return the reference of the gait language."""
+    return (TEMPLATES / "gait-reference.md").read_text(encoding="utf-8").format(**gaitpage.fields(table))
 
 
 def limits_page() -> str:
