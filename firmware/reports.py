@@ -92,7 +92,7 @@ class Reports:
         for place in range(player.notes):
             self.event(messages.NOTED, step=player.noted[place])
         player.notes = 0
-        if player.paused != self._paused:
+        if player.paused or self._paused:  # both: it went through a step that takes no time
             self._paused = player.paused
             if self._core.state == messages.RUNNING:
                 self.event(messages.PAUSED if player.paused else messages.RESUMED)

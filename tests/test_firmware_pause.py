@@ -139,3 +139,16 @@ def test_a_pause_of_an_unknown_kind_is_refused(rig):
     run_program(rig, three_steps())
 
     assert refusal(say(rig, 3)).code == codes.BAD_PAYLOAD
+
+
+def test_every_pause_is_told_also_after_a_step_that_takes_no_time(rig):
+    code = program.step(9) + program.note(9) + three_steps()
+    rig.upload(code, program.header(code, rig.profile.crc))
+    rig.arm()
+    rig.say(messages.START, paused=1, at_ms=0)
+    rig.run(20)
+    say(rig, messages.ONE_STEP)
+    rig.run(20)
+
+    assert begun(rig) == [9]
+    assert len(rig.events("paused")) == 2
