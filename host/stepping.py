@@ -12,12 +12,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from host.errors import Refused
 from host.gait.compiler import Compiled
 from host.records import Event, Record, Sample
 from host.robot import ENDS, Robot
 from host.robotclock import since
 from host.stream import AT, SLOT, unrolled
-from protocol import program
+from protocol import codes, program
 
 HELP = "Enter: this step; a number: so many; r: run on, Enter pauses; q: end the program"
 RUN_ON, QUIT = "r", "q"
@@ -43,8 +44,8 @@ class Stepper:
         self._read, self._tell = read, tell
         self._waits = waits
         self._marks = _Marks(compiled.code, is_streamed)
-        self._paused: Event | None = None  # None: the program runs
-        self._shown = False  # the step that comes next
+        self._paused: Event | None = None  # None: the program runs, or does not yet
+        self._shown = self._runs = False  # shown: the step that comes next
         self._left = 0  # steps that go without being asked about
         self._ended = False
         self._tell(HELP)
@@ -55,20 +56,18 @@ class Stepper:
             self._note(record)
         elif isinstance(record, Sample) and record.slot == SLOT and not self._shown:
             self._show(record)
-        if not self._ended and (self._shown or (self._paused is None and not self._waits)):
+        if not self._ended and (self._shown or (self._runs and not self._waits)):
             line = self._read()
             if line is not None:
-                self._obey(line.strip().lower())
+                self._try(line.strip().lower())
 
     def _note(self, event: Event) -> None:
         self._ended = self._ended or event.event in ENDS
-        if event.event == "resumed":
-            self._paused, self._shown = None, False
-        elif event.event == "paused" and self._left:
+        if event.event == "paused" and self._left:
             self._left -= 1
             self._robot.step()
         elif event.event == "paused":
-            self._paused, self._shown = event, False
+            self._paused, self._shown, self._runs = event, False, False
 
     def _show(self, record: Sample) -> None:
         """Show which step comes next, once the robot has told where it stands."""
@@ -80,20 +79,34 @@ class Stepper:
         shown = number or paused.step
         self._tell(f"{'next is' if number else 'paused in'} step {shown}: {self._compiled.step(shown)}")
 
+    def _try(self, line: str) -> None:
+        """Obey a line, unless the program has ended meanwhile."""
+        try:
+            self._obey(line)
+        except Refused as refused:
+            if refused.code != codes.NOT_RUNNING:
+                raise
+
     def _obey(self, line: str) -> None:
         """Do what a line says."""
         if line == QUIT:
             self._ended = True
             self._robot.cancel()
-        elif self._paused is None:
+        elif self._runs:
             self._robot.pause()
         elif line == RUN_ON:
+            self._leave()
             self._robot.resume()
         elif line == "" or (line.isascii() and line.isdigit() and int(line)):
+            self._leave()
             self._left = int(line or 1) - 1
             self._robot.step()
         else:
             self._tell(HELP)
+
+    def _leave(self) -> None:
+        """Take it that the program runs."""
+        self._paused, self._shown, self._runs = None, False, True
 
 
 class _Marks:
