@@ -18,6 +18,7 @@ WIDTH = 960.0
 WAYS = "solid: other waits are over at once; dashed: they run out"
 DIFFERENCE = "solid: {new}; dashed: {old}"
 STEPS_SHOWN = 12
+LARGE_MJ, LARGE_MS = 10_000, 100_000
 DOT = " · "
 
 
@@ -59,10 +60,11 @@ def summary(forecast: Forecast) -> str:
 
 def right_of(track: Track) -> list[str]:
     """Return what stands to the right of a coil's lane."""
-    on = f"on {track.on_ms / 1000:.2f} s"
+    on = f"on {_seconds(track.on_ms)} s"
     if not track.curve:
         return [on]
-    return [f"{track.peak_degc:.0f} °C", f"at {track.peak_ms / 1000:.1f} s", f"{on}, {track.energy_mj:.0f} mJ"]
+    energy = f"{track.energy_mj:.0f} mJ" if track.energy_mj < LARGE_MJ else f"{track.energy_mj / 1000:.4g} J"
+    return [f"{track.peak_degc:.0f} °C", f"at {_seconds(track.peak_ms)} s", f"{on}, {energy}"]
 
 
 class Sheet:
@@ -214,6 +216,11 @@ def _moved(ways: Sequence[Course], forecast: Forecast) -> list[list[tuple[Course
     return list(found.values())
 
 
+def _seconds(time_ms: float) -> str:
+    """Return a time in seconds, as exactly as there is room for."""
+    return f"{time_ms / 1000:.2f}" if time_ms < LARGE_MS else f"{time_ms / 1000:.0f}"
+
+
 def _name(forecast: Forecast) -> str:
     return Path(forecast.compiled.script.main.name).name
 
@@ -222,9 +229,9 @@ def _changed(row: CoilChange) -> list[str]:
     """Return what stands to the right of a coil's lane in a comparison."""
     peak, on, energy = row.peak_degc, row.on_ms, row.energy_mj
     if row.same:
-        return ["same", f"on {on.new / 1000:.2f} s"]
+        return ["same", f"on {_seconds(on.new)} s"]
     return [
         f"{peak.old:.0f} → {peak.new:.0f} °C",
-        f"on {on.old / 1000:.2f} → {on.new / 1000:.2f} s",
+        f"on {_seconds(on.old)} → {_seconds(on.new)} s",
         f"{energy.old:.0f} → {energy.new:.0f} mJ",
     ]

@@ -48,6 +48,23 @@ def ticks(low: float, high: float, most: int) -> list[float]:
     return [round(k * every, 9) for k in range(first, floor(high / every + 1e-9) + 1)]
 
 
+def instants(course: Course, until_ms: float, most: int) -> list[float]:
+    """Return round times [s] to write below what is drawn of a course, about so many, none within a gap."""
+    marks = ticks(0, max(until_ms - (course.end_ms - course.told_ms), 1) / 1000, most)
+    every = marks[1] - marks[0] if len(marks) > 1 else max(until_ms / 1000, 1e-3)
+    stretches: list[tuple[float, float]] = []
+    begin_ms = 0.0
+    for gap in course.gaps:
+        stretches.append((begin_ms, gap.begin_ms))
+        begin_ms = gap.end_ms
+    stretches.append((begin_ms, until_ms))
+    found = []
+    for first_ms, last_ms in stretches:
+        numbers = range(ceil(first_ms / 1000 / every - 1e-9), floor(last_ms / 1000 / every + 1e-9) + 1)
+        found += [round(number * every, 9) for number in numbers]
+    return found
+
+
 @dataclass(frozen=True)
 class Values:
     """Where a value is drawn on a lane, from its foot up."""

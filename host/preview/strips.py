@@ -10,9 +10,10 @@ from host.gait.course import Course, Pause
 from host.gait.plan import Label, Note, walk
 from host.preview.drawing import Drawing, shortened, wide
 from host.preview.lanes import LEFT, SMALL
-from host.preview.scale import Times, ticks
+from host.preview.scale import Times, instants
 
 ROW = 14.0
+APART = 4.0  # lines through all lanes, at least
 FLAG_MOST = 220.0
 NOTED = 40  # flags at most
 
@@ -27,7 +28,7 @@ def draw_lines(
         step, x = compiled.step(mark.step), times.x(mark.at_ms, course.gaps)
         if step is None:
             continue
-        if x - last >= 2:
+        if x - last >= APART:
             drawing.line("faint", x, y + 12, x, foot)
             last = x
         text = str(step.place.line)
@@ -94,7 +95,7 @@ def draw_waits(drawing: Drawing, times: Times, y: float, foot: float, course: Co
     for pause in course.pauses:
         x, end = times.x(pause.begin_ms, course.gaps), times.x(pause.end_ms, course.gaps)
         if end - x < 0.5:
-            drawing.line("range", x, y + 2, x, y + 10)
+            drawing.rect("wait", x - 0.5, y + 2, 1, 8)
             continue
         drawing.rect("open", x, y + 2, end - x, foot - y - 2)
         if pause.known:
@@ -115,11 +116,8 @@ def draw_time(drawing: Drawing, times: Times, y: float, course: Course) -> float
     """Draw the axis of time below the lanes; return where the next strip begins."""
     right = LEFT + times.width
     drawing.line("axis", LEFT, y, right, y)
-    end = max(course.end_ms, 1) / 1000 if course.gaps else times.told_ms / 1000
-    for at in ticks(0, end, 12):
+    for at in instants(course, max(course.end_ms, 1) if course.gaps else times.told_ms, 12):
         x = times.x(1000 * at, course.gaps)
-        if any(gap.begin_ms < 1000 * at < gap.end_ms for gap in course.gaps):
-            continue
         drawing.line("axis", x, y, x, y + 4)
         drawing.text(x, y + 15, f"{at:g}", "quiet", 9.5, "middle")
     drawing.text(right + 8, y + 15, "time [s]", "quiet", 9.5)

@@ -18,7 +18,7 @@ from host.gait.course import Bar, Course, Track
 from host.gait.forecast import Forecast
 from host.preview.compare import Changes, Pair
 from host.preview.joints import Targets, targets_of
-from host.preview.scale import Times, ticks, times_of
+from host.preview.scale import Times, instants, times_of
 
 SHADES, PLAIN_SHADES = " ░▒▓█", " .:x#"
 STEPS, PLAIN_STEPS = "▁▂▃▄▅▆▇█", "12345678"
@@ -37,6 +37,8 @@ def print_timeline(forecast: Forecast, console: Console | None = None) -> None:
             console.print(Text(f"{way}: {told}", style="bold"))
         for line in Timeline(forecast, course, console).lines():
             console.print(line, no_wrap=True, overflow="crop")
+        for gap in course.gaps:
+            console.print(Text(f"not shown: {gap.turns} more turns of a repeat after {gap.begin_ms / 1000:.1f} s"))
     unknown = [forecast.why_not] if forecast.compiled.profile.coil_labels and forecast.why_not else []
     for remark in [*unknown, *forecast.remarks()]:
         console.print(Text(printable(remark.strip())))
@@ -127,10 +129,12 @@ class Timeline:
 
     def _axis(self) -> Text:
         cells = [" "] * (self._columns + 4)
-        for at in ticks(0, self._course.end_ms / 1000, max(2, self._columns // 10)):
-            if not any(gap.begin_ms < 1000 * at < gap.end_ms for gap in self._course.gaps):
-                text, place = f"{at:g}", self._column(1000 * at)
+        free = 0
+        for at in instants(self._course, max(self._course.end_ms, 1), max(2, self._columns // 10)):
+            text, place = f"{at:g}", self._column(1000 * at)
+            if place >= free:
                 cells[place : place + len(text)] = text
+                free = place + len(text) + 1
         return Text(f"{'time [s]':<{LEFT}}{''.join(cells)[: self._columns + 4]}", style="dim")
 
     def _column(self, at_ms: float) -> int:
