@@ -128,3 +128,13 @@ def test_an_editor_that_dies_takes_its_server_along():
 
     assert server.stdout.read() == b""
     assert server.wait() == 0
+
+
+def test_another_robot_is_asked_by_its_address_and_so_is_its_model():
+    neovim = Editor("neovim", "--robot", "sim:circular?supply=2.4")
+
+    neovim.open(HERE, HEAD + "fire A at 100 % for 1100 ms\n")
+    neovim.until(lambda: neovim.told[HERE].diagnostics)
+
+    assert [(each.code, str(each.range)) for each in neovim.told[HERE].diagnostics] == [("E328", "2:0-2:27")]
+    assert neovim.end() == 0

@@ -14,9 +14,11 @@ from host.gait import sources, units
 from host.gait.parser import grammar
 from host.gait.subjects import QUANTIFIERS
 from host.gait.syntax import FORMS, KEYWORDS, NAMES
+from host.gait.turns import BACK
 from host.lsp import words
 from host.lsp.names import here
 from host.lsp.view import View
+from protocol.labels import direction
 
 PARTIAL = re.compile(r"(?:\$\w*|[A-Za-z_]\w*)?$")
 PARTIAL_ROBOT = re.compile(r"(?<=robot )\s*[\w-]*$")
@@ -152,8 +154,8 @@ def _named(cursor: _Cursor) -> Iterator[Item]:
         circles = [each.name for each in view.names.named("circle")] if last == "EQUAL" else []
         yield from (Item(each, "name", start, "circle") for each in [*circles, *["down"] * (last == "LSQB")])
     elif first == "SYM":
-        coils = view.profile.coil_labels if view.profile else ()
-        yield from (Item(each, "word", start, "axis of the body") for each in "xyz" if any("0" in c for c in coils))
+        ball = any(direction(label) for label in (view.profile.coil_labels if view.profile else ()))
+        yield from (Item(each, "word", start, "axis of the body") for each in BACK if ball)
     elif first in ("GUARD", "WAIT") and last != "IS":
         yield from _channels(cursor, ("coil", "joint", "cell"))
         yield from (Item(each, "word", start) for each in (*QUANTIFIERS, *sources.PARTS))

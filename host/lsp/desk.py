@@ -10,7 +10,7 @@ Nothing here is thread-safe: one worker does all of it, in turn.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from host.cli.scripts import place
 from host.gait.diagnostics import Diagnostic, GaitError, in_order
@@ -19,7 +19,7 @@ from host.gait.tree import Include
 from host.lsp.names import Index
 from host.lsp.robots import Robots
 from host.lsp.texts import Texts
-from host.lsp.verdicts import Unasked, Verdict, is_library, judge, read_script
+from host.lsp.verdicts import Unasked, Verdict, foretold, is_library, judge, read_script
 from host.lsp.view import View
 from host.profile import Profile
 
@@ -53,6 +53,17 @@ class Desk:
         before = self._judged.get(path)
         self._judged[path] = _Judged(script, judge(script, robot))
         return {path, *_about(self._judged[path]), *(_about(before) if before else ())}
+
+    def foretold(self, path: str, address: str) -> tuple[Diagnostic, ...]:
+        """Return what a model of a script's robot adds to its verdict; takes a while, and changes nothing."""
+        judged = self._judged.get(path)
+        return foretold(judged.verdict, address) if judged else ()
+
+    def add(self, path: str, found: tuple[Diagnostic, ...]) -> set[str]:
+        """Add to what is wrong with a script; return the paths of the texts that it is said of."""
+        judged = self._judged[path]
+        self._judged[path] = replace(judged, verdict=replace(judged.verdict, found=(*judged.verdict.found, *found)))
+        return {item.place.file for item in found}
 
     def forget(self, path: str) -> set[str]:
         """Leave out a script that was closed; return the paths of which something else may be wrong now."""

@@ -15,6 +15,7 @@ from typing import TypeVar
 from lsprotocol import types
 from pygls.lsp.server import LanguageServer
 
+from host.gait.diagnostics import Diagnostic
 from host.lsp.answers import Answers
 from host.lsp.desk import Desk
 
@@ -62,15 +63,27 @@ class GaitServer(LanguageServer):
         self._publish(await self.work(lambda: self._told(self.desk.forget(path))))
 
     async def _look(self, path: str, number: int) -> None:
+        """Look at a version of a script, tell, and then ask a model of its robot, unless a newer one has come."""
+        loop = asyncio.get_running_loop()
         async with self._turn:
-            if self._wanted[path] != number or self.desk.texts.get(path) is None:
+            if not self._newest(path, number):
                 return
             address = await self.work(lambda: self.desk.address(path))
-            loop = asyncio.get_running_loop()
             robot = await loop.run_in_executor(self.asker, self.desk.robots.ask, address) if address else None
-            if self._wanted[path] != number:
+            if not self._newest(path, number):
                 return
             self._publish(await self.work(lambda: self._told(self.desk.judge(path, robot))))
+        if address and (found := await loop.run_in_executor(self.asker, self._foretold, path, number, address)):
+            self._publish(await self.work(lambda: self._told(self._added(path, number, found))))
+
+    def _newest(self, path: str, number: int) -> bool:
+        return self._wanted[path] == number and self.desk.texts.get(path) is not None
+
+    def _foretold(self, path: str, number: int, address: str) -> tuple[Diagnostic, ...]:
+        return self.desk.foretold(path, address) if self._newest(path, number) else ()
+
+    def _added(self, path: str, number: int, found: tuple[Diagnostic, ...]) -> set[str]:
+        return self.desk.add(path, found) if self._newest(path, number) else set()
 
     def _told(self, paths: set[str]) -> list[types.PublishDiagnosticsParams]:
         """Return what there is to say now about these texts."""

@@ -33,7 +33,10 @@ from host.limits import (
 from host.profile import MASK_BITS, Profile
 
 T = TypeVar("T")
-ABOUT_THE_ROBOT = {"E131", "E136", "E137", "E138", "E139", "E144", "E146", "E148", "E149", "E165", "E191", "E199"}
+ABOUT_THE_ROBOT = {
+    "E131", "E136", "E137", "E138", "E139", "E144", "E146", "E148", "E149", "E153", "E156", "E157", "E158", "E165",
+    "E176", "E191", "E199",
+}  # fmt: skip
 WIDE = 30_000
 
 

@@ -10,9 +10,10 @@ from pathlib import Path
 
 from host.gait import tree
 from host.gait.checker import check
-from host.gait.compiler import compile_script
+from host.gait.compiler import Compiled, compile_script
 from host.gait.declare import DECLARATIONS
 from host.gait.diagnostics import Diagnostic, GaitError
+from host.gait.forecast import foretell
 from host.gait.script import Read, Script, loads
 from host.gait.tree import Place
 from host.lsp.standin import of_the_language, stand_in
@@ -29,10 +30,11 @@ class Unasked:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What there is to say about a script."""
+    """What there is to say about a script; `sound` is its program when nothing is wrong with it so far."""
 
     found: tuple[Diagnostic, ...]
     unasked: Unasked | None = None
+    sound: Compiled | None = None
 
 
 def read_script(path: str, read: Read) -> Script:
@@ -56,23 +58,30 @@ def judge(script: Script, robot: Profile | str | None) -> Verdict:
     if is_library(script):
         return Verdict(script.found)
     if isinstance(robot, Profile):
-        return Verdict(mistakes(script, robot))
-    found = of_the_language(mistakes(script, stand_in(script)))
+        return _judged(script, robot)
+    found = of_the_language(_judged(script, stand_in(script)).found)
     if robot is None:
         return Verdict(tuple(found))
     place = script.robot.place if script.robot else Place(script.main.name, 1, 1, 2)
     return Verdict(tuple(found), Unasked(place, f"limits are not checked: {robot}"))
 
 
-def mistakes(script: Script, profile: Profile) -> tuple[Diagnostic, ...]:
-    """Return everything that `softrig check` would say of a script."""
-    try:
-        return check(compile_script(script, profile)).diagnostics
-    except GaitError as error:
-        return error.diagnostics
+def foretold(verdict: Verdict, address: str) -> tuple[Diagnostic, ...]:
+    """Return what a model of the robot at an address foretells of a sound script: the lines that make it too hot."""
+    return foretell(verdict.sound, address).diagnostics if verdict.sound else ()
 
 
 def code_page(code: str) -> str | None:
     """Return the address of the page that explains a code, where the pages stand beside the package."""
     page = Path(__file__).parents[2] / "docs" / "codes.md"
     return f"{page.as_uri()}#{code.lower()}" if page.is_file() else None
+
+
+def _judged(script: Script, profile: Profile) -> Verdict:
+    """Return what `softrig check` would say of a script before it asks a model of the robot."""
+    try:
+        compiled = compile_script(script, profile)
+    except GaitError as error:
+        return Verdict(error.diagnostics)
+    found = check(compiled).diagnostics
+    return Verdict(found, sound=None if found else compiled)
