@@ -11,8 +11,8 @@ import click
 
 from host.cli.options import json_option
 from host.cli.output import emit, writing
-from host.gait.diagnostics import Diagnostic, GaitError
-from host.gait.formatting import formatted, read_script, replace_file
+from host.gait.diagnostics import GaitError
+from host.gait.formatting import Formatted, replace_file, tried
 
 STDIN = "-"
 
@@ -28,28 +28,17 @@ def command(files: tuple[str, ...], check: bool, diff: bool, as_json: bool) -> i
     Every comment stays, and so does what the script does: that is proved before a file is written. A folder stands for
     its scripts; with `-` a script goes from stdin to stdout. A script that cannot be read stays as it is.
     """
-    stale, wrong = 0, list[Diagnostic]()
-    for name in _scripts(files):
-        try:
-            before, exact = source(name)
-            after = formatted(before, name)
-        except GaitError as error:
-            wrong += error.diagnostics
-            continue
-        changed = before != after or not exact
-        stale += changed
-        if changed and name != STDIN and not (check or diff):
-            with writing(Path(name)):
-                replace_file(Path(name), after)
-        _tell(name, before, after, changed, diff, check, as_json)
+    done = [tried(name, sys.stdin.buffer if name == STDIN else None) for name in _scripts(files)]
+    for each in done:
+        if each.changed and each.name != STDIN and not (check or diff):
+            with writing(Path(each.name)):
+                replace_file(Path(each.name), each.after)
+        if not each.wrong:
+            _tell(each, diff, check, as_json)
+    wrong = [item for each in done for item in each.wrong]
     if wrong:
         raise GaitError(wrong)
-    return int(check and stale > 0)
-
-
-def source(name: str) -> tuple[str, bool]:
-    """Return the text of a file, or of stdin for `-`, and whether it is stored as this text exactly."""
-    return read_script(name, sys.stdin.buffer if name == STDIN else None)
+    return int(check and any(each.changed for each in done))
 
 
 def _scripts(names: tuple[str, ...]) -> Iterator[str]:
@@ -59,19 +48,21 @@ def _scripts(names: tuple[str, ...]) -> Iterator[str]:
         yield from [name] if below is None else map(str, below)
 
 
-def _tell(name: str, before: str, after: str, changed: bool, diff: bool, check: bool, as_json: bool) -> None:
+def _tell(done: Formatted, diff: bool, check: bool, as_json: bool) -> None:
     """Print what was done, or would be done, with one file."""
     if as_json:
-        emit(True, {"file": name, "changed": changed, **({"text": after} if name == STDIN else {})}, ())
+        text = {"text": done.after} if done.name == STDIN else {}
+        emit(True, {"file": done.name, "changed": done.changed, **text}, ())
     elif diff:
-        click.echo("".join(_difference(name, before, after)), nl=False)
-    elif name == STDIN and not check:
-        click.echo(after, nl=False)
-    elif changed:
-        emit(False, {}, [f"{name} {'would change' if check else 'written'}"])
+        click.echo("".join(_difference(done)), nl=False)
+    elif done.name == STDIN and not check:
+        click.echo(done.after, nl=False)
+    elif done.changed:
+        emit(False, {}, [f"{done.name} {'would change' if check else 'written'}"])
 
 
-def _difference(name: str, before: str, after: str) -> Iterator[str]:
+def _difference(done: Formatted) -> Iterator[str]:
     """Yield the lines of a unified diff."""
-    old, new = ([f"{line}\n" for line in text.removesuffix("\n").split("\n")] for text in (before, after))
-    yield from difflib.unified_diff(old, new, f"{name} as it is", f"{name} as written by fmt")
+    texts = (done.before, done.after)
+    old, new = ([f"{line}\n" for line in text.removesuffix("\n").split("\n")] for text in texts)
+    yield from difflib.unified_diff(old, new, f"{done.name} as it is", f"{done.name} as written by fmt")

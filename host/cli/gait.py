@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 import json
+import sys
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any, TypeVar
 
 import click
 
-from host.cli.fmt import source
+from host.cli.fmt import STDIN
 from host.cli.options import json_option
 from host.cli.output import emit, json_line, writing
-from host.errors import BadRequest
 from host.gait.diagnostics import GaitError
-from host.gait.formatting import made, replace_file
+from host.gait.formatting import made, read_script, replace_file
 from host.gait.layout import layout
 from host.gait.parser import parse_file
 from host.gait.treejson import as_json as in_json
 from host.gait.treejson import reads, schema
 
-output_option = click.option("-o", "--output", type=click.Path(), metavar="FILE", help="Instead of stdout.")
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def output_option(command: F) -> F:
+    """Add --output."""
+    return click.option("-o", "--output", type=click.Path(), metavar="FILE", help="Instead of stdout.")(command)
 
 
 @click.group("gait")
@@ -35,7 +42,7 @@ def export(script: str, output: str | None, as_json: bool) -> None:
 
     What the script includes is not looked at; `-` is a script on stdin.
     """
-    file, found = parse_file(source(script)[0], script)
+    file, found = parse_file(_text(script), script)
     if found:
         raise GaitError(found)
     tree = in_json(layout(file))
@@ -48,10 +55,7 @@ def export(script: str, output: str | None, as_json: bool) -> None:
 @json_option
 def import_(file: str, output: str | None, as_json: bool) -> None:
     """Write the script whose tree is in a JSON file; what is wrong there is told with its path."""
-    try:
-        text = made(reads(source(file)[0]), output or "script.gait")
-    except BadRequest as error:
-        raise BadRequest(f"{file}: {error}") from None
+    text = made(reads(_text(file), file), output or "script.gait")
     if as_json:
         emit(True, {"script": output, "text": text}, ())
     if output is not None or not as_json:
@@ -72,3 +76,8 @@ def _put(text: str, output: str | None) -> None:
         return
     with writing(Path(output)):
         replace_file(Path(output), text)
+
+
+def _text(name: str) -> str:
+    """Return the text of a file, or of stdin for `-`."""
+    return read_script(name, sys.stdin.buffer if name == STDIN else None)[0]

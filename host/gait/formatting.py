@@ -10,6 +10,7 @@ import errno
 import os
 import tempfile
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
@@ -20,6 +21,31 @@ from host.gait.parser import parse_file
 from host.gait.script import BYTES_MAX, as_text
 from host.gait.tree import Place
 from host.gait.writer import written
+
+
+@dataclass(frozen=True, slots=True)
+class Formatted:
+    """A file with its text in its one form, or with what is `wrong` with it; `exact`: it holds just the text."""
+
+    name: str
+    before: str = ""
+    after: str = ""
+    exact: bool = True
+    wrong: tuple[Diagnostic, ...] = ()
+
+    @property
+    def changed(self) -> bool:
+        """Return whether the file would be another one."""
+        return not self.wrong and (self.before != self.after or not self.exact)
+
+
+def tried(name: str, stream: BinaryIO | None = None) -> Formatted:
+    """Return a file, or a stream that is called so, with its one form; nothing is written."""
+    try:
+        before, exact = read_script(name, stream)
+        return Formatted(name, before, formatted(before, name), exact)
+    except GaitError as error:
+        return Formatted(name, wrong=error.diagnostics)
 
 
 def formatted(text: str, name: str) -> str:

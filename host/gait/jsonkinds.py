@@ -20,11 +20,12 @@ TEXT_MAX = 1_000
 
 
 class TreeError(BadRequest):
-    """A JSON value that is no tree of a script; the text begins with the path to what is wrong."""
+    """A JSON value that is no tree of a script; the text begins with its file, if known, and the path in it."""
 
-    def __init__(self, path: str, message: str) -> None:
-        self.path = path
-        super().__init__(f"{path or 'the file'}: {message}")
+    def __init__(self, path: str, message: str, file: str = "") -> None:
+        self.path, self.message = path, message
+        where = [part for part in (file, path) if part] or ["the file"]
+        super().__init__(": ".join([*where, message]))
 
 
 class Kind(Protocol):
@@ -125,15 +126,15 @@ class Named:
     """A kind that is defined under a name, so that kinds may hold each other."""
 
     name: str
-    kinds: dict[str, Kind]
+    kinds: Callable[[], dict[str, Kind]]
 
     def read(self, value: Any, path: str) -> Any:
         """Return what the kind of that name reads."""
-        return self.kinds[self.name].read(value, path)
+        return self.kinds()[self.name].read(value, path)
 
     def write(self, node: Any) -> Any:
         """Return what the kind of that name writes."""
-        return self.kinds[self.name].write(node)
+        return self.kinds()[self.name].write(node)
 
     def schema(self) -> dict[str, Any]:
         """Return a reference to the definition."""

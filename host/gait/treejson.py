@@ -52,16 +52,18 @@ def read(value: Any) -> Sheet:
     return Sheet(tidied(items), tidy(after, not items, last=True))
 
 
-def reads(text: str) -> Sheet:
-    """Return the layout that a JSON text holds, or raise TreeError."""
+def reads(text: str, file: str = "") -> Sheet:
+    """Return the layout that a JSON text holds, or raise TreeError; its text then begins with the name of the file."""
     try:
         return read(json.loads(text, object_pairs_hook=_once))
     except json.JSONDecodeError as error:
-        raise TreeError("", f"line {error.lineno}, column {error.colno}: {error.msg}") from None
+        raise TreeError("", f"line {error.lineno}, column {error.colno}: {error.msg}", file) from None
     except RecursionError:
-        raise TreeError("", "it is nested too deeply") from None
+        raise TreeError("", "it is nested too deeply", file) from None
+    except TreeError as error:
+        raise TreeError(error.path, error.message, file) from None
     except ValueError as error:  # a number with thousands of digits
-        raise TreeError("", str(error).split(";")[0]) from None
+        raise TreeError("", str(error).split(";")[0], file) from None
 
 
 def schema() -> dict[str, Any]:

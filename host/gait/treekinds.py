@@ -56,9 +56,8 @@ def _told(node: Name) -> str:
 
 
 SOFT = tuple(sorted(kind.lower() for kind in NAMES[1] - {"NAME"}))
-KINDS: dict[str, Kind] = {}
-EXPRESSION, COIL, STATEMENT = (Named(name, KINDS) for name in ("expression", "coil", "statement"))
-CONDITION, ARGUMENT, NAME = (Named(name, KINDS) for name in ("condition", "argument", "name"))
+EXPRESSION, COIL, STATEMENT = (Named(name, lambda: KINDS) for name in ("expression", "coil", "statement"))
+CONDITION, ARGUMENT, NAME = (Named(name, lambda: KINDS) for name in ("condition", "argument", "name"))
 OWN = Text(word(*SOFT), "a name", _made, _told)  # of a param, or of an argument
 NUMBER = Text(DECIMAL, 'a number like "0.5"', Fraction, decimal)
 COMPARE = Word(("<", ">", "<=", ">=", "==", "!="))
@@ -183,7 +182,7 @@ UNTIL = Either({"else": OTHERWISE, "word": TIMEOUT}, {tree.Otherwise: OTHERWISE,
 TURN = _node(tree.Turn, Field("axis", NAME, needed=False), Field("angle", EXPRESSION))
 PATH = Text(f"{QUOTED}*", "a text for one line without quotation marks")
 LABEL = f"{word('press')}(?:-(?:{word('press')}|{DECIMAL}))*"
-KINDS |= {
+KINDS: dict[str, Kind] = {
     "name": Text(word(), "a name", _made, _told),
     "expression": Either(VALUES, EXPRESSIONS),
     "coil": Either({"reference": REFERENCE}, {tree.Reference: REFERENCE, Name: NAME}, ((str, NAME),)),
