@@ -15,6 +15,7 @@ from protocol.program import disassemble
 from tests.gait_scripts import ROOT, profile_of
 
 PAGE = (ROOT / "docs" / "gait.md").read_text(encoding="utf-8")
+README = (ROOT / "README.md").read_text(encoding="utf-8")
 FENCED = re.findall(r"^```([\w -]*)\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
 SCRIPTS = [(kind.split()[1:], text) for kind, text in FENCED if kind.startswith("gait") and kind != "gait wrong"]
 RUN = [text for words, text in SCRIPTS if "run" in words]
@@ -45,6 +46,12 @@ def test_a_script_that_the_page_runs_ends_well(text, tmp_path):
     path.write_text(text)
 
     softrig(["run", str(path), "--robot", "sim:circular"], standalone_mode=False)
+
+
+def test_the_script_of_the_readme_is_sound():
+    (text,) = re.findall(r"^```\n(gait 1\n.*?)^```$", README, re.MULTILINE | re.DOTALL)
+
+    assert check(compiled(text)).diagnostics == ()
 
 
 def test_the_mistakes_that_the_page_shows_are_told_so():
