@@ -3,7 +3,7 @@
 `scripts(profile)` draws a script that compiles; `robots` draws the profile of a robot of the project. `scruffy` draws
 the same script as somebody in a hurry leaves it: other blanks and indentation, comments and blank lines anywhere.
 
-    SOFTRIG_EXAMPLES=5000 pytest tests/test_gait_trees.py     # many more examples than in the suite
+    SOFTRIG_EXAMPLES=5000 pytest --timeout 0 tests/test_gait_trees.py    # many more examples
 """
 
 import os

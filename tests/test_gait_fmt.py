@@ -5,6 +5,8 @@ from textwrap import dedent
 
 import pytest
 from click.testing import CliRunner
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from host.cli import main
 from host.gait.diagnostics import GaitError
@@ -13,6 +15,8 @@ from host.gait.layout import layout, same
 from host.gait.parser import parse_file
 from host.gait.writer import decimal, statement
 from tests.gait_scripts import HEAD, ROOT
+from tests.gait_strategy import examples
+from tests.test_gait_random import pieces
 
 GAITS = sorted((ROOT / "gaits").rglob("*.gait"))
 UGLY = "gait 1\nrobot round\nfire  A   at 60%  for 600ms#here\n\n\n# end"
@@ -201,6 +205,17 @@ def test_what_is_no_file_is_told_in_one_line(name):
 
     assert (done.exit_code, done.output.count("\n")) == (2, 1)
     assert "E115" in done.output
+
+
+@settings(max_examples=examples(100))
+@given(st.lists(pieces, max_size=40).map("".join))
+def test_random_text_is_formatted_or_refused_and_nothing_else(text):
+    try:
+        once = formatted(text, "x.gait")
+    except GaitError:
+        return
+
+    assert formatted(once, "x.gait") == once
 
 
 def test_a_line_that_would_grow_too_long_is_refused():

@@ -16,6 +16,7 @@ from host.gait.layout import layout, same
 from host.gait.parser import parse_file
 from host.gait.treejson import as_json, read, reads, schema
 from tests.gait_scripts import ROOT
+from tests.gait_strategy import examples
 from tests.test_gait_fmt import FAIR, GAITS, HEADS, ONE_LINERS
 
 PUBLISHED = json.loads((ROOT / "docs" / "gait.schema.json").read_text(encoding="utf-8"))
@@ -173,13 +174,14 @@ SOUND = [{"version": 1, "statements": [row]} for row in tree(WHOLE)["statements"
 PLACES = [(value, path) for value in SOUND for path in paths(value)]
 JUNK = st.sampled_from(
     [None, True, 1, 0.5, "", "A", "at", "$c", "60", "-1", "% ", "# x", "#\n", [], [[]], ["A"], {}, {"number": "1"},
-     {"reference": "c"}, {"coils": ["A", "B"]}, {"first": {"number": "1"}, "last": {"number": "2"}}, FIRE, ASKED]
+     {"reference": "c"}, {"coils": ["A", "B"]},
+     [{"coils": ["A"]}], ["A", {"reference": "c"}], [{"reference": "c"}, "A"], {"first": {"number": "1"}, "last": {"number": "2"}}, FIRE, ASKED]
 )  # fmt: skip
 
 
-@settings(max_examples=300)
+@settings(max_examples=examples(250))
 @given(st.sampled_from(PLACES), JUNK, st.sampled_from(["put", "drop", "add"]))
-def test_reader_and_schema_take_and_refuse_the_same(place, junk, how):
+def test_reader_and_schema_take_and_refuse_the_same_and_all_that_is_taken_can_be_written(place, junk, how):
     sound, path = place
     value = {"": copy.deepcopy(sound)}
     holder, key = value, ""
@@ -195,6 +197,8 @@ def test_reader_and_schema_take_and_refuse_the_same(place, junk, how):
     changed = value.get("")
 
     assert accepted(changed) == VALIDATOR.is_valid(changed)
+    if accepted(changed):
+        assert same(read(changed), layout(parse_file(made(read(changed)), "x.gait")[0]))
 
 
 def test_export_and_import_are_each_other_on_the_command_line(tmp_path):

@@ -28,7 +28,7 @@ def sheet(text):
     return layout(file)
 
 
-@settings(max_examples=examples(60))
+@settings(max_examples=examples(25))
 @given(hurried)
 def test_a_script_written_in_a_hurry_gets_one_form_and_keeps_its_comments(pair):
     text, hurry = pair
@@ -45,7 +45,7 @@ def comments(text):
     return [comment.text.rstrip() for comment in parse_file(text, "x.gait")[0].comments]
 
 
-@settings(max_examples=examples(40))
+@settings(max_examples=examples(25))
 @given(hurried)
 def test_a_script_is_the_same_after_a_journey_through_json(pair):
     text = formatted(pair[1], "x.gait")
@@ -55,7 +55,7 @@ def test_a_script_is_the_same_after_a_journey_through_json(pair):
     assert made(reads(value)) == text
 
 
-@settings(max_examples=examples(60))
+@settings(max_examples=examples(40))
 @given(sound)
 def test_a_program_is_the_same_after_it_was_taken_apart(pair):
     profile, text = pair
@@ -67,7 +67,7 @@ def test_a_program_is_the_same_after_it_was_taken_apart(pair):
     check_code(code, len(profile.coil_labels), 1 << 20, len(profile.joint_labels), len(profile.cells))
 
 
-@settings(max_examples=examples(30))
+@settings(max_examples=examples(20))
 @given(sound, st.data())
 def test_a_script_in_its_form_makes_the_program_that_it_made_before(pair, data):
     profile, text = pair
@@ -81,7 +81,7 @@ def test_a_script_in_its_form_makes_the_program_that_it_made_before(pair, data):
 def test_the_random_scripts_use_every_statement_of_the_language():
     seen = set()
 
-    @settings(max_examples=examples(50))
+    @settings(max_examples=examples(40))
     @given(robots.flatmap(scripts))
     def look(text):
         seen.update(type(node) for node in walk(parse_file(text, "x.gait")[0].statements))
