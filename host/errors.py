@@ -119,6 +119,10 @@ class LinkLost(SoftrigError):
     exit_code = 7
 
 
+class TakenOver(LinkLost):
+    """Another host has taken over the lease and the program; the robot obeys this one no more."""
+
+
 class Interrupted(SoftrigError):
     """The user broke off; the text says what the robot acknowledged."""
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from typing import Any
 
 from host.answers import Answers
-from host.errors import SoftrigError
+from host.errors import SoftrigError, TakenOver
 from host.handshake import Handshake
 from host.pages import Pages
 from host.profile import Parts, Profile
@@ -147,6 +147,7 @@ class Hearing:
         if identity.session != self.handshake.identity.session:
             return
         self.trouble = self.trouble or changed(self.handshake.identity, identity)
+        self.holds_lease = self.holds_lease and not isinstance(self.trouble, TakenOver)  # else it would stop the robot
         greeted, self._greeted = self._greeted, None
         if greeted is not None:
             self._compare(identity.uptime_ms, greeted, state_name(identity.state), now_us, payload_bytes)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from host.errors import LinkLost, RobotFault, SoftrigError
+from host.errors import LinkLost, RobotFault, SoftrigError, TakenOver
 from host.records import state_name
 from protocol import codes
 
@@ -16,7 +16,7 @@ def changed(before: Any, now: Any) -> SoftrigError | None:
     if now.boot != before.boot:
         return restarted(state_name(now.state))
     if now.holder not in (0, before.session):
-        return LinkLost("another host has taken the robot over")
+        return TakenOver("another host has taken the robot over")
     return None
 
 

@@ -4,7 +4,7 @@ from binascii import crc32
 
 import pytest
 
-from host.errors import BadRequest, LinkLost
+from host.errors import BadRequest, LinkLost, TakenOver
 from host.robot import Robot
 from host.run import IfLost, outliving, upload, watch
 from protocol import program
@@ -59,6 +59,17 @@ def test_a_host_that_lives_loses_its_robot_to_the_one_that_takes_over(working):
     assert other.status().lease_ms > 0
     with pytest.raises(LinkLost, match="another host has taken the robot over"):
         working.robot.status()
+
+
+def test_a_host_whose_robot_was_taken_over_leaves_it_to_the_other(working):
+    other = Robot(working.link)
+    other.attach()
+    with pytest.raises(TakenOver):
+        working.robot.status()
+
+    working.robot.leave()
+
+    assert other.status().state == "running"
 
 
 def test_the_program_goes_on_with_the_same_lease(working):
