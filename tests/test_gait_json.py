@@ -175,7 +175,8 @@ PLACES = [(value, path) for value in SOUND for path in paths(value)]
 JUNK = st.sampled_from(
     [None, True, 1, 0.5, "", "A", "at", "$c", "60", "-1", "% ", "# x", "#\n", [], [[]], ["A"], {}, {"number": "1"},
      {"reference": "c"}, {"coils": ["A", "B"]},
-     [{"coils": ["A"]}], ["A", {"reference": "c"}], [{"reference": "c"}, "A"], {"first": {"number": "1"}, "last": {"number": "2"}}, FIRE, ASKED]
+     [{"coils": ["A"]}], ["A", {"reference": "c"}], [{"reference": "c"}, "A"],
+     {"first": {"number": "1"}, "last": {"number": "2"}}, FIRE, ASKED]
 )  # fmt: skip
 
 
