@@ -1,7 +1,9 @@
 """The gaits that come with softrig: each is sound for its robot and does what its header says."""
 
 import pytest
+from click.testing import CliRunner
 
+from host.cli import main as softrig
 from host.gait.checker import check
 from host.gait.compiler import compile_script
 from host.gait.script import load
@@ -99,3 +101,26 @@ def test_the_poses_are_a_c_e_g_each_cooled_before_the_next():
 def test_the_cool_down_fires_nothing_and_is_bounded():
     assert fires("circular-cooldown") == []
     assert check(made("circular-cooldown")).longest_ms == 60_010
+
+
+@pytest.mark.parametrize("ball", ["a", "b"])
+def test_the_crawl_of_a_sphere_turned_half_round_is_the_crawl_back(ball):
+    profile = profile_of(f"sphere-{ball}")
+    scripts = [load(ROOT / "gaits" / f"sphere-{ball}-{gait}.gait") for gait in ("crawl", "crawl-back")]
+
+    turned = compile_script(scripts[0], profile, ["turned=180deg"])
+
+    assert turned.code == compile_script(scripts[1], profile).code
+
+
+@pytest.mark.parametrize("path", [path for path in GAITS if "-sweep" in path.stem], ids=lambda path: path.stem)
+def test_a_sweep_is_sound_with_as_many_steps_as_fit_into_the_robot(path):
+    script = load(path)
+
+    assert check(compile_script(script, profile_of(script.robot_name()), ["steps=7"])).sound
+
+
+def test_every_gait_is_written_in_the_one_form():
+    files = [str(path) for path in sorted((ROOT / "gaits").rglob("*.gait"))]
+
+    assert CliRunner().invoke(softrig, ["fmt", "--check", *files]).exit_code == 0

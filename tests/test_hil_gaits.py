@@ -72,3 +72,11 @@ def test_two_coils_do_not_lift_the_spherical_robot_a_off_the_ground(tmp_path):
     seen = json.loads(result.stdout.splitlines()[-1])["observed"]
     assert 1 < seen["apex_mm"] < 2.5
     assert seen["clearance_mm"] == 0
+
+
+def test_the_spherical_robot_a_climbs_six_degrees():
+    seen = ran("sphere-a-climb", "sphere-a?slope=6")["observed"]
+
+    assert seen["travel_mm"] == pytest.approx(614, rel=0.03)
+    assert abs(seen["lateral_mm"]) < 20
+    assert seen["peak_coil_degc"] < 140
