@@ -1,7 +1,6 @@
 """What the language server knows, asked without a process: offers, what is pointed at, names, and nonsense."""
 
 import random
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,121 +9,23 @@ from pygls.exceptions import JsonRpcInvalidParams
 from pygls.workspace import PositionCodec
 
 from host.gait import sources
+from host.gait.script import read_text
 from host.gait.syntax import CLAUSES, FORMS
 from host.lsp import words
 from host.lsp.answers import Answers
-from host.lsp.completion import complete
-from host.lsp.desk import Desk
 from host.lsp.hover import hover
 from host.lsp.outline import declaration, outline
+from host.lsp.verdicts import judge, read_script
 from tests.gait_scripts import ball_robot, round_robot
+from tests.lsp_samples import FIRST_FREE, HEAD, ROOT, URI, desk_with
 
-ROOT = Path(__file__).parents[1]
-URI = (ROOT / "gaits" / "new.gait").as_uri()
-HEAD = """gait 1
-robot round
-param duty = 60 % [5 % .. 90 %]  # how much
-include "lib/lift.gait"
-circle ring = A B C
-# Both at once.
-def both(a, b):
-    fire $a $b at $duty for 600 ms
-"""
-FIRST_FREE = HEAD.count("\n") + 1
 NONSENSE = ["\t", "\r", "\r\n", "\x00", "😀", "$", '"', "..", "(", "[", ":", "\u2028", "\ud800", "\n", "    ", "else "]
 NONSENSE += ["wait until ", "for ", "sym ", "1e9", "hold ", "on fault:", "label ", "def f(", "\ufeff", "#"]
-
-
-class Known:
-    """Robots of which each is the same."""
-
-    def __init__(self, profile):
-        self.profile = profile
-
-    def ask(self, address):
-        return self.profile
-
-    known = ask
-
-    def names(self):
-        return ["round"]
-
-    def forget_lost(self):
-        pass
-
-
-def desk_with(text, profile=None):
-    desk = Desk(Known(profile or round_robot()))
-    path = desk.texts.put(URI, text, 1)
-    desk.judge(path, desk.robots.profile)
-    return desk, path
-
-
-def offers(line, text=HEAD, profile=None):
-    desk, path = desk_with(text + line, profile)
-    view = replace(desk.view(path), robots=("round",))
-    return [item.text for item in complete(view, text.count("\n") + 1, len(line))]
 
 
 def shown(line, column, text=HEAD, profile=None):
     desk, path = desk_with(text + line, profile)
     return hover(desk.view(path), text.count("\n") + 1, column)
-
-
-@pytest.mark.parametrize(
-    ("line", "some"),
-    [
-        ("", ["fire", "wait", "repeat", "both", "lift"]),
-        ("fire ", ["A", "front", "at", "for", "until", "$duty"]),
-        ("fire A at ", ["$duty", "$clear"]),
-        ("fire A at 60 ", ["%", "for"]),
-        ("fire A at 60 % f", ["for", "until"]),
-        ("    fire $", ["$a", "$b", "$duty"]),
-        ("wait until A.", ["temperature", "heat", "resistance"]),
-        ("wait until A.temperature > 95 ", ["C", "timeout", "else"]),
-        ("wait 5", ["ms", "s"]),
-        ("guard ", ["any", "all", "supply", "board", "A"]),
-        ("guard supply.", ["current", "voltage"]),
-        ("robot ", ["round"]),
-        ("let next = ", ["ring"]),
-        ("let next = ring[", ["down"]),
-        ("both(", ["A", "front", "$duty"]),
-        ("for c in ", ["A", "even"]),
-        ("on ", ["fault"]),
-        ('include "lib/', ["lib/lift.gait", "lib/push.gait"]),
-        ('note "at $d', ["$duty"]),
-    ],
-)
-def test_what_may_come_next_is_offered(line, some):
-    assert set(some) <= set(offers(line))
-
-
-@pytest.mark.parametrize(
-    "line", ["# fire ", "param ", "label ", "fire A at at ", 'note "fire ', "fire A at 60 % for 2 s # "]
-)
-def test_where_nothing_of_the_script_can_stand_nothing_is_offered(line):
-    assert offers(line) == []
-
-
-def test_labels_are_offered_only_further_down():
-    text = HEAD + "label early\nwait until A.temperature > 95 C timeout 4 s else \nlabel late\n"
-    desk, path = desk_with(text)
-
-    found = complete(desk.view(path), FIRST_FREE + 1, 49)
-
-    assert [item.text for item in found] == ["continue", "abort", "late"]
-
-
-def test_arguments_are_offered_only_in_their_own_def():
-    assert not {"$a", "$b"} & set(offers("fire $"))
-
-
-def test_names_are_still_offered_while_the_text_cannot_be_read():
-    desk, path = desk_with(HEAD)
-    desk.view(path)
-    desk.texts.put(URI, HEAD + "\tfire $", 2)
-
-    assert "$duty" in [item.text for item in complete(desk.view(path), FIRST_FREE, 7)]
 
 
 @pytest.mark.parametrize(
@@ -198,6 +99,38 @@ def test_every_word_and_quantity_of_the_language_has_its_sentence():
     assert set(words.STATEMENTS) == set(FORMS)
     assert set(words.CLAUSES) == set(CLAUSES)
     assert set(words.QUANTITIES) == {*quantities, "down"}
+
+
+@pytest.mark.parametrize("script", sorted(ROOT.glob("gaits/*.gait"))[::3], ids=lambda path: path.stem)
+def test_where_its_robot_cannot_be_asked_nothing_is_wrong_with_a_good_script(script):
+    verdict = judge(read_script(str(script), read_text), "no such port")
+
+    assert verdict.found == ()
+    assert verdict.unasked.reason == "limits are not checked: no such port"
+
+
+@pytest.mark.parametrize(
+    ("line", "word", "fixed"),
+    [
+        ("fier A at 60 % for 1 s", "fier", "fire"),
+        ("fire A at $dutty for 1 s", "dutty", "duty"),
+        ("wait 5 sec", "sec", "s"),
+        ("bothe(A, B)", "bothe", "both"),
+        ("fire frnt at 60 % for 1 s", "frnt", "front"),
+    ],
+)
+def test_a_word_that_was_meant_otherwise_is_put_right_at_a_click(line, word, fixed):
+    desk, _ = desk_with(HEAD + line)
+    at = types.Position(FIRST_FREE - 1, line.index(word))
+    context = types.CodeActionContext([])
+
+    (fix,) = Answers(desk, PositionCodec()).fixes(
+        types.CodeActionParams(types.TextDocumentIdentifier(URI), types.Range(at, at), context)
+    )
+
+    (edit,) = fix.edit.changes[URI]
+    assert (edit.range.start, edit.new_text) == (at, fixed)
+    assert edit.range.end.character - at.character == len(word)
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import Protocol
 
@@ -86,6 +87,19 @@ class Answers:
         new = written(layout(view.file)).replace("\n", text.line_end)
         return [types.TextEdit(self._columns.whole(view.lines), new)] if new != text.source else []
 
+    def fixes(self, params: types.CodeActionParams) -> list[types.CodeAction]:
+        """Return what puts right the words at a cursor that were meant otherwise."""
+        path = path_of(params.text_document.uri)
+        lines, actions = self._desk.lines(path), []
+        for item in self._desk.found(path):
+            told, slip = self._diagnostic(item, lines), _slip(item)
+            if slip and told.range.start <= params.range.end and params.range.start <= told.range.end:
+                edit = types.TextEdit(self._columns.range(slip[0], lines), slip[1])
+                change = types.WorkspaceEdit(changes={params.text_document.uri: [edit]})
+                title = f"Write `{slip[1]}`"
+                actions.append(types.CodeAction(title, types.CodeActionKind.QuickFix, [told], True, edit=change))
+        return actions
+
     def outline(self, uri: str) -> list[types.DocumentSymbol]:
         """Return what a text declares."""
         view = self._desk.view(path_of(uri))
@@ -169,3 +183,12 @@ class Answers:
         return types.Location(
             self._desk.texts.uri(place.file), self._columns.range(place, self._desk.lines(place.file))
         )
+
+
+def _slip(item: Diagnostic) -> tuple[Place, str] | None:
+    """Return the place of a word for which another was meant, and that word."""
+    wrong, meant = re.search(r"`\$?(\w+)`", item.message), re.search(r"did you mean `(\S+)`\?", item.help)
+    at = item.source_line.find(wrong[1], item.place.column - 1, item.place.end_column - 1) if wrong else -1
+    if wrong is None or meant is None or at < 0:
+        return None
+    return replace(item.place, column=at + 1, end_column=at + 1 + len(wrong[1])), meant[1]

@@ -194,10 +194,18 @@ def _references(cursor: _Cursor) -> Iterator[Item]:
 def _units(cursor: _Cursor) -> Iterator[Item]:
     """Yield the units that a number may have where it stands."""
     if "PERCENT" in cursor.accepts:
-        wanted = _compared(cursor) or words.kind_behind(cursor.first.lower(), cursor.clause, cursor.view.profile)
+        wanted = _compared(cursor) or _behind(cursor)
         for name, unit in units.UNITS.items():
             if wanted in (None, unit.kind):
                 yield Item(name, "unit", cursor.start, unit.kind)
+
+
+def _behind(cursor: _Cursor) -> str | None:
+    """Return the kind of quantity that stands behind a word of the statement, where no calculation began."""
+    begins = [str(token) for token in cursor.tokens[-3:-1] if token.type != "MINUS"][-1:]
+    if begins != [cursor.clause]:
+        return None
+    return words.kind_behind(cursor.first.lower(), cursor.clause, cursor.view.profile)
 
 
 def _compared(cursor: _Cursor) -> str | None:

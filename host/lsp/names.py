@@ -96,7 +96,7 @@ class Index:
         return (symbol for symbol in self.symbols if symbol.place in places)
 
     def _statement(self, node: Statement, env: Env) -> None:
-        for part in _parts(node):
+        for part in parts(node):
             match part:
                 case Reference():
                     self._use(env.get(part.name), replace(part.place, column=part.place.column + 1))
@@ -149,7 +149,7 @@ def _open_blocks(lines: tuple[str, ...], line: int) -> set[tuple[str, int]]:
     return found
 
 
-def _parts(node: object) -> Iterator[object]:
+def parts(node: object) -> Iterator[object]:
     """Yield a node and all within it, but not the statements of its block."""
     yield node
     for item in fields(node) if is_dataclass(node) else ():
@@ -158,4 +158,4 @@ def _parts(node: object) -> Iterator[object]:
         value = getattr(node, item.name)
         for part in value if isinstance(value, tuple) else (value,):
             if is_dataclass(part):
-                yield from _parts(part)
+                yield from parts(part)

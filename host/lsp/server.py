@@ -152,6 +152,12 @@ def _add_questions(server: GaitServer) -> None:
     async def formatting(params: types.DocumentFormattingParams) -> list[types.TextEdit] | None:
         return await server.work(lambda: server.answers.formatted(params.text_document.uri))
 
+    kinds = types.CodeActionOptions([types.CodeActionKind.QuickFix])
+
+    @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, kinds)
+    async def fixes(params: types.CodeActionParams) -> list[types.CodeAction]:
+        return await server.work(lambda: server.answers.fixes(params))
+
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
     async def symbols(params: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
         return await server.work(lambda: server.answers.outline(params.text_document.uri))

@@ -30,6 +30,7 @@ from host.limits import (
     SessionLimits,
     SupplyLimits,
 )
+from host.lsp.names import parts
 from host.profile import MASK_BITS, Profile
 
 T = TypeVar("T")
@@ -47,11 +48,8 @@ def stand_in(script: Script) -> Profile:
         *(Coil(each, "sma", 0, 0) for each in coils),
         *(Joint(each, "servo", 0, 0, 0) for each in joints),
     )
-    lengths = any(
-        isinstance(part.value, tree.Number) and part.value.unit == "mm"
-        for part in _clauses(script)
-        if part.word == "to"
-    )
+    targets = (clause.value for clause in _clauses(script) if clause.word == "to")
+    lengths = any(isinstance(part, tree.Number) and part.unit == "mm" for value in targets for part in parts(value))
     return Profile(
         robot=script.robot.name if script.robot else "",
         supply_mv=WIDE,
