@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -46,7 +45,7 @@ def export(script: str, output: str | None, as_json: bool) -> None:
     if found:
         raise GaitError(found)
     tree = in_json(layout(file))
-    _put(f"{json_line(tree)}\n" if as_json else f"{json.dumps(tree, indent=2, ensure_ascii=False)}\n", output)
+    _put(f"{json_line(tree, None if as_json else 2)}\n", output)
 
 
 @command.command("import")
@@ -66,7 +65,7 @@ def import_(file: str, output: str | None, as_json: bool) -> None:
 @output_option
 def schema_(output: str | None) -> None:
     """Write the JSON Schema of these trees."""
-    _put(f"{json.dumps(schema(), indent=2)}\n", output)
+    _put(f"{json_line(schema(), 2)}\n", output)
 
 
 def _put(text: str, output: str | None) -> None:

@@ -44,9 +44,10 @@ def writing(path: Path) -> Iterator[None]:
         raise BadRequest(f"cannot write {path}: {error.strerror}") from error
 
 
-def json_line(fields: Any) -> str:
-    """Return `fields` on one line, names in their order, numbers as they are."""
-    return _UNPRINTED.sub(_json_number, json.dumps(fields, ensure_ascii=False, allow_nan=False, default=float))
+def json_line(fields: Any, indent: int | None = None) -> str:
+    """Return `fields` on one line, or indented; names in their order, numbers as they are."""
+    text = json.dumps(fields, ensure_ascii=False, allow_nan=False, default=float, indent=indent)
+    return _UNPRINTED.sub(_json_number, text)
 
 
 def error_line(error: SoftrigError) -> str:

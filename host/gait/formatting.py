@@ -89,8 +89,14 @@ def _bytes(path: Path) -> bytes:
 
 
 def replace_file(path: Path, text: str) -> None:
-    """Put a text in place of a file at once: whoever reads it, or stops us, finds the old one or the new one."""
+    """Put a text in place of a file at once: whoever reads it, or stops us, finds the old one or the new one.
+
+    What is no file, such as a pipe, is written to.
+    """
     target = path.resolve()
+    if path.exists() and not path.is_file():
+        path.write_text(text, encoding="utf-8", newline="\n")
+        return
     file, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}-")
     try:
         with open(file, "w", encoding="utf-8", newline="\n") as stream:
