@@ -129,6 +129,18 @@ def test_numbers_stay_exact():
     assert made(read(value)) == "wait 0.1000000000000000000000000000001 s\n"
 
 
+def test_blank_lines_that_no_form_has_are_dropped():
+    block = {
+        "statement": "repeat",
+        "body": [{"statement": "wait", "before": ["", "# a"]}],
+        "after": ["", "", "# b", ""],
+    }
+
+    text = made(read({"version": 1, "statements": [block, {"statement": "wait", "before": [""]}], "after": [""]}))
+
+    assert text == "repeat:\n    # a\n    wait\n\n    # b\n\nwait\n"
+
+
 def test_the_published_schema_is_that_of_the_reader_and_sound():
     Draft202012Validator.check_schema(PUBLISHED)
 

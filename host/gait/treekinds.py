@@ -130,7 +130,9 @@ class Statement:
         beside = BESIDE.read(value["comment"], joined(path, "comment")).rstrip() if "comment" in value else ""
         if blocks:
             values["body"] = tuple(item.node for item in body)
-        return Item(record.node(**values), around["before"], beside, tidied(body), tidy(around["after"], False))
+        return Item(
+            record.node(**values), around["before"], beside, tidied(body), tidy(around["after"], False, last=True)
+        )
 
     def write(self, node: Item) -> dict[str, Any]:
         """Return the object of an item."""
