@@ -149,6 +149,12 @@ def test_a_note_is_told_with_what_params_and_arguments_stand_for():
     assert [made.step(row[2]).note for row in notes] == ["push A B at 7.5 %, $5 or 100%", "turn 1", "turn 2"]
 
 
+def test_a_note_within_a_sym_tells_the_coil_that_is_meant_there():
+    made = compiled('def f(c):\n    note "push $c"\nsym 45 deg:\n    f(A)')
+
+    assert made.steps[0].note == "push B"
+
+
 def test_a_note_in_a_together_is_told_in_its_time():
     body = 'together:\n    fire A at 5 % for 30 ms\n    repeat 2:\n        wait 10 ms\n        note "on"'
 

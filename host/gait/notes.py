@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from host.gait import tree
+from host.gait import tree, turns
 from host.gait.scope import CellSet, Chosen, CoilSet, Scope, Value
 from host.gait.tree import Place, Reference
 
@@ -12,7 +12,10 @@ NAMED = re.compile(r"\$([A-Za-z_][A-Za-z_0-9]*)")
 
 
 def told(node: tree.Note, scope: Scope) -> str:
-    """Return what a note says; a name that is not declared, or not known before the robot runs, is reported."""
+    """Return what a note says, of coils within a sym those that are meant by their names there.
+
+    A name that is not declared, or not known before the robot runs, is reported.
+    """
     return NAMED.sub(lambda match: _shown(_reference(node, match), scope), node.text)
 
 
@@ -26,7 +29,7 @@ def _reference(node: tree.Note, match: re.Match[str]) -> Reference:
 def _shown(node: Reference, scope: Scope) -> str:
     value: Value = scope.lookup(node)
     if isinstance(value, CoilSet):
-        return " ".join(scope.profile.named(value.mask))
+        return " ".join(scope.profile.named(turns.meant(value.mask, scope)))
     if isinstance(value, CellSet):
         return " ".join(label for cell, label in enumerate(scope.profile.cell_labels) if value.mask >> cell & 1)
     if isinstance(value, Chosen):

@@ -47,28 +47,35 @@ def masked(mask: int | None, nodes: Iterable[tree.Coil], scope: Scope) -> int | 
     """Return the mask of the coils that are meant by those of `mask`; one that is not there is reported."""
     if not mask or scope.table is None:
         return mask
-    meant = [(channel, scope.table[channel]) for channel in range(mask.bit_length()) if mask >> channel & 1]
-    missing = sum(1 << channel for channel, other in meant if other is None)
+    pairs = [(channel, scope.table[channel]) for channel in range(mask.bit_length()) if mask >> channel & 1]
+    missing = sum(1 << channel for channel, other in pairs if other is None)
     for node in nodes if missing else ():
         lost = (channels.channel(node, scope) or 0) & missing
         if lost:
             label = scope.profile.named(lost)[0]
             help = "name coils that stand in every place where the turns bring them"
             scope.problems.add(node.place, "E158", f"the turn brings no coil to the place of {label}", help)
-    return None if missing else sum(1 << other for _, other in meant if other is not None)
+    return None if missing else sum(1 << other for _, other in pairs if other is not None)
+
+
+def meant(mask: int, scope: Scope) -> int:
+    """Return the mask of the coils that are meant, for a reader: where there is none, the one that is named."""
+    named = [channel for channel in range(mask.bit_length()) if mask >> channel & 1]
+    others = [scope.table[channel] for channel in named] if scope.table else named
+    return sum(1 << (own if other is None else other) for own, other in zip(named, others, strict=True))
 
 
 def circle(numbers: tuple[int, ...], node: tree.Let, scope: Scope) -> tuple[int, ...]:
     """Return the circle that is meant by one of these channels; () when a coil of it is not there (and reported)."""
     if scope.table is None:
         return numbers
-    meant = [scope.table[channel] for channel in numbers]
-    for channel, other in zip(numbers, meant, strict=True):
+    others = [scope.table[channel] for channel in numbers]
+    for channel, other in zip(numbers, others, strict=True):
         if other is None:
             message = f"the turn brings no coil to the place of {scope.profile.labels[channel]}"
             scope.problems.add(node.circle.place, "E158", message)
             return ()
-    return tuple(other for other in meant if other is not None)
+    return tuple(other for other in others if other is not None)
 
 
 def _ring(node: tree.Sym, scope: Scope) -> Table | None:
