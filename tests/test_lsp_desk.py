@@ -73,6 +73,28 @@ def test_a_name_leads_to_its_declaration(line, column, file, at):
     assert (Path(place.file).name, place.line) == (file, at)
 
 
+def test_a_library_knows_the_names_of_the_open_script_that_includes_it():
+    desk, main = desk_with('gait 1\nrobot round\nparam boost = 600 ms\ninclude "lib/heat.gait"\n')
+    library = ROOT / "gaits" / "lib" / "heat.gait"
+    lines = library.read_text(encoding="utf-8").splitlines()
+    number = next(number for number, line in enumerate(lines, 1) if "for $boost" in line)
+
+    path = desk.texts.put(library.as_uri(), "\n".join(lines), 1)
+    place = declaration(desk.view(path), number, lines[number - 1].index("$boost") + 2)
+
+    assert (place.file, place.line) == (main, 3)
+
+
+def test_a_cursor_behind_wide_characters_is_where_the_editor_has_it():
+    line = 'note "\U0001f600\U0001f600 $duty"'
+    desk, _ = desk_with(HEAD + line)
+    at = types.Position(FIRST_FREE - 1, len(line) + 2 - 1)  # two characters are two units each
+
+    found = Answers(desk, PositionCodec()).definition(types.DefinitionParams(types.TextDocumentIdentifier(URI), at))
+
+    assert found.range.start == types.Position(2, 6)
+
+
 def test_an_include_leads_to_its_file():
     desk, path = desk_with(HEAD)
 
