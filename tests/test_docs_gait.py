@@ -4,6 +4,7 @@ import re
 import shlex
 from contextlib import chdir
 
+import click
 import pytest
 
 from host.cli import main as softrig
@@ -72,6 +73,12 @@ def test_the_commands_of_the_page_run_one_after_another(tmp_path):
             softrig(shlex.split(line)[1:], standalone_mode=False)
 
     assert (tmp_path / "first.svg").stat().st_size
+
+
+def test_the_page_names_commands_that_exist():
+    named = set(re.findall(r"`softrig ([a-z]+)", PAGE)) | {line.split()[1] for line in COMMANDS}
+
+    assert named <= set(softrig.list_commands(click.Context(softrig)))
 
 
 def test_the_page_names_every_script_that_comes_with_it():

@@ -93,7 +93,9 @@ def test_every_target_the_readme_names_exists():
     assert {"demo", "test"} <= named <= targets
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/design.md", "docs/fingers.md", "docs/gait-reference.md"])
+@pytest.mark.parametrize(
+    "page", ["README.md", "docs/design.md", "docs/fingers.md", "docs/gait.md", "docs/gait-reference.md"]
+)
 def test_every_file_a_page_links_to_exists(page):
     text = (ROOT / page).read_text(encoding="utf-8")
 

@@ -41,6 +41,16 @@ def test_fingers_that_do_not_feel_their_object_let_it_go():
     assert (report["result"], report["observed"]["gripped"]) == ("timeout", False)
 
 
+def test_fingers_whose_camera_is_lost_let_the_cube_go(tmp_path):
+    faults = tmp_path / "faults.toml"
+    faults.write_text('seed = 1\n[[fault]]\nname = "camera-lost"\nat_ms = 4500\n')
+
+    report = ran("fingers-orient", f"fingers-experiment?faults={faults}")
+
+    assert (report["result"], report["caught"]["code"]) == ("camera lost", "F27")
+    assert not report["observed"]["gripped"]
+
+
 def test_a_press_whose_cells_feel_nothing_lifts():
     report = ran("press-selftest", f"press?{COARSE}", "cells=1kPa")
 
