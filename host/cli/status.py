@@ -80,6 +80,8 @@ def _fields(status: Status, line: dict[str, int | None]) -> dict[str, object]:
 
 def _lines(status: Status, line: dict[str, int | None], parts: Parts) -> Iterator[str]:
     yield ", ".join([status.state, *_driven(status, parts)])
+    if status.step or status.paused:
+        yield f"  program     {'paused in ' if status.paused else ''}step {status.step}"
     row = causes.row(status.code)
     if row:
         yield f"  last fault  {row.name} {row.cause} {row.todo}"
