@@ -57,7 +57,8 @@ class Ledger:
         self._outlives = False
         self._armed_us = now_us
         self._upload = bytearray()
-        self._may_outlive = self._one_may = self._doubtful = False
+        self._may_outlive = self._one_may = self._doubtful = self._streams = False
+        self._played: Claim | None = None  # of the program that was started last, if its code is known
         self._stop = frames.StopFinder()
         self._talks = [Talk(self._seed, 0)]  # any of them may be in force: the robot need not have said so yet
         self._uploader = self._talks[0]
@@ -115,7 +116,7 @@ class Ledger:
             self._begin(talk, order.header)
         elif message is messages.CODE:
             self._doubtful = self._doubtful or talk is not self._uploader
-            self._upload[order.offset : order.offset + len(order.code)] = order.code
+            self._take(order.offset, order.code)
         if claim is not None:
             self._add(claim, now_us)
         talk.open[received.seq] = (message, claim, order, len(self.claims))
@@ -130,11 +131,23 @@ class Ledger:
 
     def _begin(self, talk: Talk, header: bytes) -> None:
         self._upload, self._doubtful, self._uploader = bytearray(), False, talk
+        self._streams, self._played = False, None
         try:
-            self._may_outlive = bool(program.read_header(header).flags & program.OUTLIVES_HOST)
+            flags = program.read_header(header).flags
+            self._streams = bool(flags & program.STREAMED)
+            self._may_outlive = bool(flags & program.OUTLIVES_HOST)
             self._one_may = self._one_may or self._may_outlive
         except program.BadProgram:
             self._doubtful = True
+
+    def _take(self, offset: int, code: bytes) -> None:
+        """Take a piece of a program, which may run already if it is streamed."""
+        if not self._streams:
+            self._upload[offset : offset + len(code)] = code
+            return
+        self._upload += code
+        if self._played is not None:
+            self._played.budget_us = self._budgets()
 
     def _budgets(self) -> dict[int, float]:
         """Return for how long the program may have each channel on; nothing, which is no limit, when it is none."""
@@ -186,6 +199,7 @@ class Ledger:
         elif message is messages.START:
             self._outlives = self._may_outlive
             claim.budget_us = self._budgets()
+            self._played = claim
             self._live(now_us)
 
     def _replaced(self, coils: int, by: Claim | None, count: int, now_us: int) -> None:
