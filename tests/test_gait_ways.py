@@ -12,6 +12,9 @@ from hypothesis import strategies as st
 from firmware.player import FINISHED, TIMED_OUT
 from protocol.verify import check_code
 from tests.gait_scripts import ball_robot, compiled, hand_robot, press_robot, report
+from tests.joint_scripts import HOME, moves, orients
+from tests.test_gait_moves_on_firmware import READY_MS
+from tests.test_gait_moves_on_firmware import Bare as Hand
 from tests.test_gait_on_firmware import STEP_MS, Bare
 
 LATER = "wait until A.temperature > 90 C timeout 1 s else"
@@ -231,3 +234,42 @@ def test_a_jump_from_a_long_loop_is_as_hot_as_the_robot_then_is(turns):
     assert bare.run() == FINISHED
     assert bare.heat_uj[0] <= worst.coils[0].heat_peak_mj * 1000
     assert bare.on_ms[0] <= worst.coils[0].on_ms
+
+
+joint_waits = st.builds(
+    "wait until {} > 29 deg timeout {} ms else {}".format,
+    st.sampled_from(["R.angle", "any both.angle"]),
+    st.integers(1, 700),
+    st.sampled_from(["abort", "abort", "end", "continue"]),
+)
+joint_parts = st.lists(st.one_of(moves, orients, joint_waits), min_size=1, max_size=5).map("\n".join)
+joint_scripts = st.builds(
+    "{}\n{}\nlabel end\n{}\nwait 100 ms\non fault:\n    {}".format,
+    st.just(HOME),
+    joint_parts,
+    joint_parts.map(lambda text: text.replace("else end", "else abort")),
+    st.lists(moves, min_size=1, max_size=2).map("\n    ".join),
+)
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.filter_too_much])
+@given(joint_scripts, st.integers(0, 0xFFFF))
+def test_whichever_way_a_script_goes_joints_stay_within_its_worst_case(body, seed):
+    worst = report(body, hand_robot())
+    assume(worst.sound)
+    hand, random = Hand(compiled(body, profile=hand_robot()).code), Random(seed)
+    chance, holds = random.choice([0, 0.01]), hand.player._holds
+    hand.player._holds = lambda place: holds(place) or random.random() < chance
+
+    if hand.run() == TIMED_OUT:
+        hand.now_ms += READY_MS
+        assert hand.player.catch(5, hand.now_ms)
+        hand.limbs.stand()
+        hand.now_ms += STEP_MS
+        assert hand.run() == FINISHED
+
+    fastest = max(joint.fastest_centi_per_s for joint in worst.joints)
+    assert hand.fastest_centi_per_s <= fastest + 2 * 1000 // STEP_MS  # whole hundredths in each step
+    for joint, told in zip(worst.joints, hand.told, strict=True):
+        assert joint.least_centi <= min(told) + 1
+        assert max(told) - 1 <= joint.most_centi
