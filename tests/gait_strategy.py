@@ -1,7 +1,8 @@
 """Random scripts that are valid: of the whole language but for includes, for any robot, as a person might type them.
 
-`scripts(profile)` draws a script that compiles; `robots` draws the profile of a robot of the project. `scruffy` draws
-the same script as somebody in a hurry leaves it: other blanks and indentation, comments and blank lines anywhere.
+`scripts(profile)` draws a script that compiles, and that mostly keeps the limits of its robot; `robots` draws the
+profile of a robot of the project. `scruffy` draws the same script as somebody in a hurry leaves it: other blanks and
+indentation, comments and blank lines anywhere.
 
     SOFTRIG_EXAMPLES=5000 pytest --timeout 0 tests/test_gait_trees.py    # many more examples
 """
@@ -86,6 +87,7 @@ class _Pen:
         return self.draw(st.sampled_from(options))
 
     def some(self, options, most=3):
+        most = min(most, self.profile.supply.at_once_max)
         return self.draw(st.lists(st.sampled_from(options), min_size=1, max_size=most, unique=True))
 
     def whole(self, least, most):
@@ -107,7 +109,7 @@ class _Pen:
         head += [f"guard {self.condition()}" for _ in range(self.whole(0, 2))]
         defs = [line for number in range(self.whole(0, 2)) for line in self.define(f"act{number}")]
         self.labels = [f"stop{number}" for number in range(self.whole(0, 2))]
-        body = []
+        body = [f"move all to 0 {self.profile.unit} over {self.slow()}"] if self.joints else []
         while self.labels or len(body) < 3 or self.chance():
             if self.labels and self.chance():
                 body += [f"label {self.labels.pop(0)}", *self.statement(0)]
@@ -161,7 +163,13 @@ class _Pen:
         joint = joint or self.pick([*self.joints, "all", *self.known("joint")])
         ends = [self.profile.servo.least_centi, self.profile.servo.most_centi]
         position = f"{self.whole(*ends) / 100} {self.profile.unit}"
-        return f"move {joint} to {position} over {self.time()}{self.pick(['', ' overlap 5 ms'])}"
+        time = self.pick([self.time(), *[self.slow()] * 7])
+        return f"move {joint} to {position} over {time}{self.pick(['', ' overlap 5 ms'])}"
+
+    def slow(self):
+        """Return a time in which a joint comes from anywhere to anywhere."""
+        limits = self.profile.servo
+        return f"{-(-1000 * (limits.most_centi - limits.least_centi) // limits.slew_centi_per_s)} ms + {self.time()}"
 
     def orient(self):
         return f"orient {self.whole(-12, 12)} deg for {self.time()}"
@@ -222,8 +230,8 @@ class _Pen:
     def listed(self):
         """Return one or more coils: by name, by group, or what a name stands for."""
         groups = [name for name, labels in self.profile.groups.items() if set(labels) <= set(self.coils)]
-        references = self.known("coil")
-        return self.pick([self.pick(groups or self.coils), *references, " ".join(self.some(self.coils))])
+        lists = [" ".join(self.some(self.coils)) for _ in range(3)]
+        return self.pick([*lists, *lists, *self.known("coil"), self.pick(groups or self.coils)])
 
     def condition(self):
         """Return something that this robot can be asked."""
