@@ -148,8 +148,8 @@ class _Pen:
     def order(self, depth):
         if self.coils:
             return [self.pick([self.fire, self.fire, self.hold])(self.listed())]
-        others = [self.press] if self.profile.press else [self.orient] if self.profile.orient else []
-        return [self.pick([self.move, *others])()]
+        other = self.press if self.profile.press else self.orient if self.profile.orient else self.move
+        return [self.pick([self.move, other])()]
 
     def fire(self, coils):
         ends = self.pick(["", " until 95 C", " ramp 5 ms", " overlap 5 ms", " overlap 0 s until 80.5 C ramp 3 ms"])
