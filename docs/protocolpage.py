@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from docs import board, dbc, exchange, vectors
 from docs.definitions import Place, Row, enums, rows, variables
-from firmware import greetings, selftest, subscriptions
+from firmware import greetings, player, selftest, subscriptions
 from firmware.rates import RATES
 from firmware.subscriptions import STEP_MS
 from host import handshake, session, silence, stopping
@@ -185,6 +185,10 @@ def _programs(table: Table) -> dict[str, object]:
         "aims_max": program.AIMS_MAX,
         "depth_max": program.DEPTH_MAX,
         "guards_max": program.GUARDS_MAX,
+        "bad_code": codes.BAD_CODE,
+        "too_large": codes.TOO_LARGE,
+        "starved": codes.STARVED,
+        "ops_per_step": player.OPS_PER_STEP,
     }
 
 
