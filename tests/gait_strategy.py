@@ -140,7 +140,7 @@ class _Pen:
         """Return the lines of one statement."""
         kinds = [self.order, self.order, self.wait, self.wait_until, self.note]
         kinds += [self.repeat, self.for_each, self.together] if depth < DEPTH_MAX else []
-        kinds += [self.sym] if depth < DEPTH_MAX and self.turns else []
+        kinds += [self.sym] * 2 if depth < DEPTH_MAX and self.turns else []
         kinds += [self.let] if self.profile.imu is not None and not self.plain else []
         kinds += [self.call] if self.defs and not self.plain else []
         return self.pick(kinds)(depth)

@@ -81,10 +81,10 @@ def test_a_script_in_its_form_makes_the_program_that_it_made_before(pair, data):
 
 def test_the_random_scripts_use_every_statement_of_the_language():
     seen = set()
-    three = st.sampled_from(["sphere-a", "fingers", "press"]).map(profile_of)
+    some = st.sampled_from(["sphere-a", "sphere-a", "fingers", "press"]).map(profile_of)
 
-    @settings(max_examples=examples(40))
-    @given(three.flatmap(scripts))
+    @settings(max_examples=examples(60))
+    @given(some.flatmap(scripts))
     def look(text):
         seen.update(type(node) for node in walk(parse_file(text, "x.gait")[0].statements))
 
