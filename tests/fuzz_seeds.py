@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from protocol import frames, messages, program
+from tests.fuzz_gait import ROBOTS, WORDS, coded
 from tests.fuzz_script import SESSION
 
 CORPUS = Path(__file__).parent / "corpus"
@@ -16,6 +17,64 @@ ANSWERS = [message for message in messages.MESSAGES if 0x40 <= message.number < 
 CODE = program.fire(1, 500, 100) + program.delay(50) + program.off(1) + program.halt()
 HELLO, WAIT, ARM, STOP, BREAK = b"\x01", b"\xfc", b"\x06\x00", b"\x03", b"\x15"  # acts of the target `core`
 IDENTITY, MOMENT = b"\x01\x01\x00", b"\x28\x00"  # acts of the target `session`
+FOR = [
+    "gait 1\nrobot circular\n",
+    "for",
+    "c",
+    "in",
+    "A",
+    "B",
+    ":",
+    "\n    ",
+    "fire",
+    "$c",
+    "at",
+    "60",
+    "%",
+    "for",
+    "600",
+    "ms",
+]
+TEXTS = {
+    "circular": "param duty = 60 % [5 % .. 90 %]\ndef push(c):\n    fire $c at $duty for 600 ms until 95 C\n"
+    "repeat 2:\n    together:\n        push(A)\n        fire D E at 30 % for 800 ms ramp 100 ms  # both\n",
+    "sphere-b": "circle roll = A100 A001 Am100 A00m1\nguard any.temperature > 120 C\nlet next = roll[down + 1]\n"
+    "hold $next at 80 C with 9 % for 1 s\nwait until pitch > 30 deg timeout 4 s else out\nsym z 90 deg:\n"
+    "    fire A100 at 9 % for 1 s overlap 200 ms\nlabel out\nwait 1 s\n",
+    "fingers-experiment": "for a in 2.5 deg, -2.5 deg:\n    move R to $a over 500 ms\norient 2 deg for 1 s\n"
+    'note "turned"\non fault:\n    move all to 0 deg over 1 s\n',
+    "press": "move P to 4 mm over 2 s\nwait until force > 5 N timeout 4 s else abort\npress to 5 N over 1 s for 2 s\n"
+    "wait until all C1 C2.pressure < 3 kPa timeout 2 * 500 ms else continue\n",
+}
+WORDY = (
+    FOR,
+    [*FOR[:7], "\n    ", "sym", "45", "deg", ":", "\n        ", *FOR[8:], "\n", "wait", "2", "s"],
+    [
+        FOR[0],
+        "wait",
+        "until",
+        "any",
+        ".",
+        "temperature",
+        "<",
+        "45",
+        "C",
+        "timeout",
+        "5",
+        "s",
+        "else",
+        "abort",
+        "\n",
+        "on",
+        "fault",
+        ":",
+        "\n    ",
+        "wait",
+        "1",
+        "s",
+    ],
+    ["gait 1\nrobot press\n", "press", "to", "5", "N", "over", "1", "s", "for", "8", "s", "\n", "note", '"'],
+)
 
 
 def sized(data: bytes) -> bytes:
@@ -168,11 +227,18 @@ def socketcand() -> Iterator[tuple[str, bytes]]:
         yield name, b"".join(b"\x11" + sized(each) for each in _halves(text))
 
 
+def gait() -> Iterator[tuple[str, bytes]]:
+    for robot, text in TEXTS.items():
+        yield robot, coded(f"gait 1\nrobot {robot}\n{text}", robot)
+    for number, words in enumerate(WORDY):
+        yield f"words {number}", bytes((0x80,)) + bytes(WORDS.index(word) for word in words)
+
+
 def _halves(text: str) -> tuple[bytes, bytes]:
     return text[: len(text) // 2].encode(), text[len(text) // 2 :].encode()
 
 
-SEEDS = (decoder, link, core, hand, press, session, canbus, slcan, socketcand)
+SEEDS = (decoder, link, core, hand, press, session, canbus, slcan, socketcand, gait)
 
 
 def files() -> Iterator[tuple[Path, bytes]]:

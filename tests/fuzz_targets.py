@@ -8,6 +8,7 @@ An input is a row of acts; what it says of frames is sealed here, so that the fu
 from protocol import frames, messages, secret
 from protocol.canbus import CLASSIC, FD, UNDER_WAY_MAX, Assembler, Segmenter
 from protocol.link import PAST_MAX, QUEUE_MAX, WINDOW, Link
+from tests.fuzz_gait import gait
 from tests.fuzz_host import session
 from tests.fuzz_robot import core, hand, press
 from tests.fuzz_script import CRC, SESSION, Script
@@ -135,5 +136,5 @@ def _assembled(taken) -> None:
 
 TARGETS = {
     "decoder": decoder, "link": link, "core": core, "hand": hand, "press": press, "session": session, "canbus": canbus,
-    "slcan": slcan, "socketcand": socketcand,
+    "slcan": slcan, "socketcand": socketcand, "gait": gait,
 }  # fmt: skip
