@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from protocol import frames, messages, program
-from tests.fuzz_gait import ROBOTS, WORDS, coded
+from tests.fuzz_gait import WORDS, coded
 from tests.fuzz_script import SESSION
 
 CORPUS = Path(__file__).parent / "corpus"
