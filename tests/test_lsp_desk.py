@@ -44,6 +44,7 @@ def shown(line, column, text=HEAD, profile=None):
         ("guard any.temperature > 95 C", 12, "estimated temperature"),
         ("fire A at 60 for 600 ms", 11, "**E120** A number has no unit."),
         ("repeat 3:", 2, "at most 8 deep"),
+        ("hold A at 80 C with 40 % for 5 s", 7, "The temperature that is kept.\n\nbelow the robot's own trip at 120 C"),
     ],
 )
 def test_hover_says_what_a_word_stands_for_and_how_far_it_goes(line, column, said):

@@ -11,10 +11,9 @@ from pygls.exceptions import JsonRpcInvalidParams
 from pygls.workspace import PositionCodec
 
 from host.errors import BadRequest
-from host.gait.diagnostics import Diagnostic
-from host.gait.layout import layout
+from host.gait.diagnostics import Diagnostic, GaitError
+from host.gait.formatting import formatted
 from host.gait.tree import Place
-from host.gait.writer import written
 from host.lsp import outline as names
 from host.lsp.completion import Item, complete
 from host.lsp.desk import Desk
@@ -79,13 +78,15 @@ class Answers:
 
     def formatted(self, uri: str) -> list[types.TextEdit] | None:
         """Return the edit that lays a text out; nothing while it cannot be read, or when it is laid out already."""
-        view = self._desk.view(path_of(uri))
-        text = self._desk.texts.get(view.path)
-        wrong = any(item.place.file == view.path for item in view.script.found)
-        if view.file is None or text is None or wrong or not view.file.readable:
+        path = path_of(uri)
+        text, lines = self._desk.texts.get(path), self._desk.lines(path)
+        if text is None:
             return None
-        new = written(layout(view.file)).replace("\n", text.line_end)
-        return [types.TextEdit(self._columns.whole(view.lines), new)] if new != text.source else []
+        try:
+            new = formatted("\n".join(lines), path).replace("\n", text.line_end)
+        except GaitError:
+            return None
+        return [types.TextEdit(self._columns.whole(lines), new)] if new != text.source else []
 
     def fixes(self, params: types.CodeActionParams) -> list[types.CodeAction]:
         """Return what puts right the words at a cursor that were meant otherwise."""

@@ -119,7 +119,7 @@ def _words(cursor: _Cursor) -> Iterator[Item]:
     for word in KEYWORDS if cursor.first != "ROBOT" else ():
         if word.upper() in cursor.accepts and not (cursor.tokens and word in there):
             kind = "word" if cursor.tokens else "statement"
-            about = (words.CLAUSES if cursor.tokens else words.STATEMENTS).get(word, "")
+            about = words.clause(cursor.first.lower(), word) if cursor.tokens else words.STATEMENTS.get(word, "")
             yield Item(word, kind, cursor.start, "" if cursor.tokens else FORMS.get(word, ""), about)
 
 

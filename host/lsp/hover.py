@@ -58,7 +58,7 @@ def _word(view: View, before: str, word: str) -> str:
     if named or word not in KEYWORDS:
         return named or (_quantity(word) if statement[0] in ("guard", "wait", "let") else "")
     allowed = words.limit(statement[0], word, profile) if profile else ""
-    return _joined(f"`{word}`: {words.CLAUSES.get(word, '')}", allowed)
+    return _joined(f"`{word}`: {words.clause(statement[0], word)}", allowed)
 
 
 def _symbol(symbol: Symbol, view: View) -> str:

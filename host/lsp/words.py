@@ -49,6 +49,12 @@ CLAUSES = {
     "in": "What the block runs for.",
     "fault": "The program was aborted: a wait ran out with `else abort`, or the camera was lost.",
 }
+WITHIN = {  # what a word means in one statement only
+    ("hold", "at"): "The temperature that is kept.",
+    ("wait", "until"): "Waits for a condition, which the robot looks at in every control step.",
+    ("press", "to"): "The force to reach.",
+    ("press", "over"): "Within which time the force is reached.",
+}
 QUANTITIES = {
     "temperature": "estimated temperature of a coil, or that of the board",
     "heat": "energy that a coil holds",
@@ -86,6 +92,11 @@ def kind_behind(statement: str, clause: str, profile: Profile | None) -> str | N
     if clause in TIMES and statement != "for":
         return units.TIME
     return EXPECTED.get((statement, clause))
+
+
+def clause(statement: str, word: str) -> str:
+    """Return what a word means within a statement."""
+    return WITHIN.get((statement, word)) or CLAUSES.get(word, "")
 
 
 def limit(statement: str, word: str, profile: Profile) -> str:
