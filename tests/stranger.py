@@ -194,7 +194,7 @@ class Stranger:
 
     def upload(self, code: bytes) -> None:
         """Send a program, ready for `start`."""
-        header = struct.pack("<2sBBIII", b"SG", 1, 0, crc32(self.profile), len(code), crc32(code))
+        header = struct.pack("<2sBBIII", b"SG", 2, 0, crc32(self.profile), len(code), crc32(code))
         self.order("program", header=header)
         for offset in range(0, len(code), PIECE_BYTES):
             self.order("code", offset=offset, code=code[offset : offset + PIECE_BYTES])

@@ -7,10 +7,12 @@ anything.
 import ast
 import json
 import random
+import struct
 import sys
 from collections import Counter
 from contextlib import closing
 from pathlib import Path
+from zlib import crc32
 
 import pytest
 
@@ -213,7 +215,7 @@ def test_a_press_presses_and_tells_what_it_and_the_block_feel(press):
 def test_a_program_runs_to_its_end(robot):
     robot.arm()
     robot.upload(stranger.fire(1, 300, 200) + stranger.delay(300) + stranger.fire(2, 300, 100) + stranger.HALT)
-    robot.order("start", at_ms=0)
+    robot.order("start", at_ms=0, paused=0)
     events = [robot.wait("event") for _ in range(3)]
 
     assert [event["event"] for event in events] == [EVENTS[name] for name in ("accepted", "started", "finished")]
@@ -223,10 +225,25 @@ def test_a_program_runs_to_its_end(robot):
     }
 
 
+def test_a_program_is_streamed_as_its_page_says(robot):
+    turn, sent = stranger.fire(1, 300, 100) + stranger.delay(200), 0
+    robot.arm()
+    robot.order("program", header=struct.pack("<2sBBIII", b"SG", 2, 2, crc32(robot.profile), 0, 0))
+    for piece in (2 * turn, 2 * turn, turn + stranger.HALT):
+        robot.order("code", offset=sent, code=piece)
+        if not sent:
+            robot.order("start", at_ms=0, paused=0)
+        sent += len(piece)
+    events = [robot.wait("event") for _ in range(3)]
+
+    assert [event["event"] for event in events] == [EVENTS[name] for name in ("accepted", "started", "finished")]
+    assert events[2]["now_ms"] - events[1]["now_ms"] == pytest.approx(1000, abs=5)  # a control step
+
+
 def test_events_that_the_robot_tells_again_are_heard_once(robot):
     robot.arm()
     robot.upload(stranger.fire(1, 300, 100) + stranger.HALT)
-    robot.order("start", at_ms=0)
+    robot.order("start", at_ms=0, paused=0)
     robot.losing["sent"] = 10  # all that would acknowledge them
     robot.pass_s(1.5)
 
