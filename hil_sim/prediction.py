@@ -75,6 +75,8 @@ class Thermals:
             self._count,
         )  # fmt: skip
         self._heat = bound(heat, *self._parts, 0, EVER_MS)
+        self._cold = [values.copy() for values in (*self._state, self._on)]
+        self._numbers = robot.battery
 
     @property
     def degc(self) -> FloatArray:
@@ -85,6 +87,12 @@ class Thermals:
     def energy_mj(self) -> FloatArray:
         """What each coil has turned to heat so far."""
         return 1e3 * self._state.E_in
+
+    def restart(self) -> None:
+        """Let all coils be cold again, and the battery as full as it was."""
+        for values, before in zip((*self._state, self._on), self._cold, strict=True):
+            values[:] = before
+        self._battery = Battery(self._numbers) if self._numbers else None
 
     def copy(self, place: int, index: int) -> None:
         """Let the coil at `place` be as the one at `index` is, in all but the energy that it has taken."""

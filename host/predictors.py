@@ -41,6 +41,9 @@ class Coils(Protocol):
     def energy_mj(self) -> Any:
         """What each coil has turned to heat so far."""
 
+    def restart(self) -> None:
+        """Let all coils be cold again."""
+
     def copy(self, place: int, index: int) -> None:
         """Let the coil at `place` be as the one at `index` is, in all but the energy that it has taken."""
 

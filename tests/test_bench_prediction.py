@@ -104,3 +104,13 @@ def still_bench(robot, script):
             supply.spend(5000)
         found.append(plant.temperature.copy())
     return np.array(found)
+
+
+def test_coils_that_are_restarted_come_to_the_same_again():
+    coils = predictor("sim:sphere-a")
+    heated = [1000] * 3 + [0] * 15
+    first = coils.advance(heated, 700).degc.copy()
+
+    coils.restart()
+
+    assert (coils.advance(heated, 700).degc == first).all()

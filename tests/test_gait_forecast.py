@@ -7,7 +7,7 @@ import pytest
 
 from host.gait.compiler import compile_script
 from host.gait.course import ABORTED, GUARDED
-from host.gait.forecast import foretell
+from host.gait.forecast import follow, foretell, model_of
 from host.gait.script import load
 from tests.gait_scripts import ROOT, circular, compiled, hand_robot, profile_of
 
@@ -22,7 +22,8 @@ def warm():
 
 def foretold(body, every_ms=0, profile=None):
     """Return the forecast of a script for the circular robot."""
-    return foretell(compiled(body, profile=profile or circular(), head=HEAD), "sim:circular", every_ms)
+    profile = profile or circular()
+    return follow(compiled(body, profile=profile, head=HEAD), model_of("sim:circular", profile), every_ms)
 
 
 def track(course, label):
@@ -161,3 +162,15 @@ def test_nothing_is_said_of_temperatures_where_there_are_no_coils():
 
     assert list(found.lines()) == []
     assert found.early.end_ms == 3000
+
+
+def test_a_chosen_coil_begins_as_the_hottest_of_its_circle():
+    head = "gait 1\nrobot sphere-a\ncircle roll = A00m1 A10m1 A100\n"
+    choose = "let next = roll[down]\nfire $next at 60 % for 200 ms"
+
+    cold, warmed = (
+        foretell(compiled(before + choose, profile=profile_of("sphere-a"), head=head), "sim:sphere-a")
+        for before in ("", "fire A100 at 60 % for 1 s\n")
+    )
+
+    assert track(warmed.early, "$next").peak_degc > track(cold.early, "$next").peak_degc + 30

@@ -9,7 +9,7 @@ from rich.console import Console
 
 from host.gait.compiler import compile_script
 from host.gait.course import Course, Gap
-from host.gait.forecast import foretell
+from host.gait.forecast import follow, model_of
 from host.gait.script import load, loads
 from host.preview.compare import changes
 from host.preview.drawing import wide
@@ -38,7 +38,7 @@ def forecast():
 
 def foretold(text):
     """Return the forecast of a script for the circular robot, with curves."""
-    return foretell(compile_script(loads(text), circular()), "sim:circular", 20)
+    return follow(compile_script(loads(text), circular()), model_of("sim:circular", circular()), 20)
 
 
 def of_gait(name):
@@ -46,7 +46,7 @@ def of_gait(name):
     script = load(str(ROOT / "gaits" / f"{name}.gait"))
     robot = script.robot_name()
     profile = profile_of(robot)
-    return foretell(compile_script(script, profile), f"sim:{robot}", 40)
+    return follow(compile_script(script, profile), model_of(f"sim:{robot}", profile), 40)
 
 
 def texts(svg):

@@ -12,7 +12,7 @@ from host.cli.output import emit, note, writing
 from host.cli.scripts import place
 from host.errors import BadRequest
 from host.gait.compiler import compile_script
-from host.gait.forecast import Forecast, foretell
+from host.gait.forecast import Forecast, Model, follow, model_of
 from host.gait.script import load
 from host.preview.compare import changes
 from host.preview.drawing import THEMES
@@ -51,8 +51,9 @@ def command(
     address = place(load(script), robot)
     with connected(address, watch_only=True) as face:
         profile = face.profile
-    new = foretold(script, address, profile, params)
-    old = foretold(other, address, profile, params if other == script else ()) if other is not None else None
+    model = model_of(address, profile)
+    new = foretold(script, model, profile, params)
+    old = foretold(other, model, profile, params if other == script else ()) if other is not None else None
     if output is not None:
         with writing(output):
             output.write_text(difference(old, new, theme) if old else picture(new, theme), encoding="utf-8")
@@ -63,9 +64,8 @@ def command(
         print_changes(changes(old, new)) if old else print_timeline(new)
 
 
-def foretold(script: str, address: str, profile: Profile, params: tuple[str, ...]) -> Forecast:
+def foretold(script: str, model: Model, profile: Profile, params: tuple[str, ...]) -> Forecast:
     """Return the forecast of a script, its curves told in as many points as can be seen."""
     compiled = compile_script(load(script), profile, params)
-    quick = foretell(compiled, address)
-    told_ms = max(course.told_ms for course in quick.ways.values())
-    return foretell(compiled, address, max(LEAST_MS, told_ms // TOLD))
+    told_ms = max(course.told_ms for course in follow(compiled, model).ways.values())
+    return follow(compiled, model, max(LEAST_MS, told_ms // TOLD))

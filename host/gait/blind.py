@@ -17,6 +17,9 @@ class Blind:
         self.degc = self.energy_mj = np.zeros(len(labels) + spare)
         self._trace = np.zeros((0, len(labels) + spare + 1))
 
+    def restart(self) -> None:
+        """Do nothing: they are cold."""
+
     def copy(self, place: int, index: int) -> None:
         """Do nothing: one coil is as the other."""
 

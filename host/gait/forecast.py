@@ -4,7 +4,7 @@ A model of the robot (`host.predictors`) says how coils warm and cool, at rest i
 know, such as where down is, is taken twice: waits for it are over at once, and only when their time is. So the
 temperatures are those of two runs among many, a preview and no proof; the worst case is the checker's part.
 
-    forecast = foretell(compiled, predictor(address, compiled.profile))
+    forecast = foretell(compiled, "sim:circular")
     print(*forecast.lines(), sep="\\n")
 """
 
@@ -20,7 +20,9 @@ from host.gait.plan import Step
 from host.gait.play import Play
 from host.gait.tree import Place
 from host.predictors import Coils, Unpredicted, predictor
+from host.profile import Profile
 
+Model = Coils | str  # or why there is none
 WAYS = {"early": "if every other wait is over at once", "late": "if every other wait runs out"}
 
 
@@ -126,19 +128,33 @@ class Forecast:
         return found
 
 
-def foretell(compiled: Compiled, address: str, every_ms: int = 0) -> Forecast:
-    """Return the forecast for the robot at an address, with temperatures each `every_ms` at least, if not 0."""
-    why_not = ""
+def foretell(compiled: Compiled, address: str) -> Forecast:
+    """Return the forecast for the robot at an address, without curves."""
+    return follow(compiled, model_of(address, compiled.profile))
+
+
+def model_of(address: str, profile: Profile) -> Model:
+    """Return the model of the robot at an address, or in one line why there is none."""
     try:
-        coils: Coils | None = predictor(address, compiled.profile)
+        return predictor(address, profile)
     except Unpredicted as reason:
-        coils, why_not = None, str(reason)
-    first = Play(compiled.profile, coils, True, every_ms)
+        return str(reason)
+
+
+def follow(compiled: Compiled, model: Model, every_ms: int = 0) -> Forecast:
+    """Return the forecast by a model, with temperatures each `every_ms` at least, if not 0."""
+    coils, why_not = (None, model) if isinstance(model, str) else (model, "")
+    first = _play(compiled, coils, True, every_ms)
     early = late = first.run(compiled.plan)
     if first.unknown:
-        coils = predictor(address, compiled.profile) if coils else None
-        late = Play(compiled.profile, coils, False, every_ms).run(compiled.plan)
+        late = _play(compiled, coils, False, every_ms).run(compiled.plan)
     return Forecast(compiled, early, late, why_not)
+
+
+def _play(compiled: Compiled, coils: Coils | None, early: bool, every_ms: int) -> Play:
+    if coils is not None:
+        coils.restart()
+    return Play(compiled.profile, coils, early, every_ms)
 
 
 def _fields(peak: Peak) -> dict[str, object]:
