@@ -13,8 +13,9 @@ from host.gait.forecast import follow, model_of
 from host.gait.script import load, loads
 from host.preview.compare import changes
 from host.preview.drawing import wide
-from host.preview.picture import difference, picture
-from host.preview.scale import Times, ticks
+from host.preview.lanes import LEFT, RIGHT
+from host.preview.picture import WIDTH, difference, picture
+from host.preview.scale import Times, ticks, times_of
 from host.preview.terminal import print_changes, print_timeline
 from tests.gait_scripts import ROOT, circular, profile_of
 
@@ -164,3 +165,14 @@ def on_terminal(show, encoding="utf-8"):
     told = Told()
     show(Console(file=told, width=100, highlight=False))
     return told.getvalue()
+
+
+def test_what_happens_in_the_late_way_alone_is_drawn_dashed():
+    forecast = of_gait("press-creep")
+
+    paths = ElementTree.fromstring(picture(forecast)).iter(f"{SVG}path")
+    solid = [node.get("d") for node in paths if node.get("class") == "joint"]
+
+    ends = [float(x) for path in solid for x in re.findall(r"[ML]([\d.]+)", path)]
+    times = times_of(list(forecast.ways.values()), LEFT, WIDTH - LEFT - RIGHT)
+    assert max(ends) == pytest.approx(times.x(forecast.early.end_ms, []), abs=0.1)

@@ -28,6 +28,7 @@ class Lanes:
 
     drawing: Drawing
     times: Times
+    first: Course  # drawn solid
     trip_degc: float  # 0: no temperatures are known
     hottest_degc: float
 
@@ -37,9 +38,9 @@ class Lanes:
         """Draw a coil whose lane begins at y: its duties from the foot up, its temperatures over them."""
         drawing = self.drawing
         self._ground(y, LANE, label, under, right)
-        for i, (course, track) in enumerate(ways):
+        for course, track in ways:
             for bar in track.bars:
-                self._bar(y + LANE, bar, course, "edge" if i else "duty")
+                self._bar(y + LANE, bar, course, "duty" if course is self.first else "edge")
         if not self.trip_degc:
             return
         values = Values(y + LANE, LANE, COLD_DEGC, max(self.trip_degc, self.hottest_degc) + 6)
@@ -51,8 +52,8 @@ class Lanes:
         lines = [self._curve(course, track, values) for course, track in ways]
         if len(lines) == 2 and all(lines):
             drawing.curve("band", band(*lines), closed=True)
-        for line, kind in reversed(list(zip(lines, ("heat", "other"), strict=False))):
-            drawing.curve(kind, thinned(line))
+        for line, (course, _) in reversed(list(zip(lines, ways, strict=True))):
+            drawing.curve("heat" if course is self.first else "other", thinned(line))
 
     def joint(self, y: float, ways: Sequence[tuple[Course, Targets]], low: float, high: float) -> None:
         """Draw what is asked of a joint, or of what joints hold, in its own unit."""
@@ -65,11 +66,11 @@ class Lanes:
         for value in ticks(low, high, 3):
             self.drawing.text(LEFT - 5, values.y(value) + 3, f"{value:g}", "quiet", SMALL, "end")
             self.drawing.line("faint", LEFT, values.y(value), LEFT + self.times.width, values.y(value))
-        for i, (course, targets) in enumerate(ways):
-            for begin, end in targets.spans if i == 0 else ():
+        for course, targets in ways:
+            for begin, end in targets.spans:
                 x = self.times.x(begin, course.gaps)
                 self.drawing.rect("held", x, y, self.times.x(end, course.gaps) - x, JOINT_LANE)
-            kinds = [("guess", targets.guesses), ("joint2" if i else "joint", targets.lines)]
+            kinds = [("guess", targets.guesses), ("joint" if course is self.first else "joint2", targets.lines)]
             for kind, line in [(kind, line) for kind, lines in kinds for line in lines]:
                 self.drawing.curve(kind, [(self.times.x(ms, course.gaps), values.y(value)) for ms, value in line])
 

@@ -140,7 +140,7 @@ class Sheet:
         forecast, tracks = self._forecast, _driven(self.ways)
         hottest = max((track.peak_degc for course in self.ways for track in course.tracks), default=0.0)
         trip_degc = 0.0 if forecast.why_not else forecast.compiled.profile.coil.trip_degc
-        lanes = Lanes(self._drawing, self._times, trip_degc, hottest)
+        lanes = Lanes(self._drawing, self._times, self.ways[0], trip_degc, hottest)
         for track in tracks:
             ways = [(course, each) for course in self.ways for each in course.tracks if each.label == track.label]
             under = f"one of {len(track.reach)}, °C" if track.reach else "°C" if trip_degc else ""

@@ -120,7 +120,7 @@ def draw_time(drawing: Drawing, times: Times, y: float, course: Course) -> float
         x = times.x(1000 * at, course.gaps)
         drawing.line("axis", x, y, x, y + 4)
         drawing.text(x, y + 15, f"{at:g}", "quiet", 9.5, "middle")
-    drawing.text(right + 8, y + 15, "time [s]", "quiet", 9.5)
+    drawing.text(right + 16, y + 15, "time [s]", "quiet", 9.5)
     return y + 22
 
 
