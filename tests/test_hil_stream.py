@@ -130,10 +130,11 @@ def turns(count):
     return program.repeat(count) + program.step(2) + fires + program.delay(20) + program.next_()
 
 
-def test_a_program_larger_than_the_robots_memory_is_streamed():
+@pytest.mark.parametrize("world", ["cpython", "micropython"])
+def test_a_program_larger_than_the_robots_memory_is_streamed(world):
     code = turns(120) + program.halt()
 
-    ending, tape = played("sim:circular?body=still", code, True)
+    ending, tape = played(f"sim:circular?body=still&world={world}", code, True)
 
     on = [at_ms for at_ms, values in tape.trace().items() if values["duty_permille"]["A"]]
     assert sum(map(len, unrolled(code))) > 6000
@@ -179,6 +180,20 @@ def test_a_guard_that_comes_late_in_a_stream_guards_although_another_stood_in_it
     ending, _ = played("sim:circular?body=still", late + turns(120) + program.halt(), True)
 
     assert ending.result == "guard"
+
+
+def test_a_bad_line_delays_no_order_of_a_stream(tmp_path):
+    faults = tmp_path / "faults.toml"
+    faults.write_text('seed = 3\n[[fault]]\nname = "line-flip:2"\nat_ms = 900\nfor_ms = 1500\n')
+
+    ending, tape = played(f"sim:circular?body=still&faults={faults}", turns(120) + program.halt(), True)
+
+    assert ending.result == "done"
+    finished, started = (
+        next(each.now_ms for each in tape.records if isinstance(each, Event) and each.event == event)
+        for event in ("finished", "started")
+    )
+    assert finished - started == pytest.approx(120 * 20, abs=2 * STEP_MS)
 
 
 def test_pieces_are_whole_ops_and_loops_are_unrolled_only_as_they_are_sent():
