@@ -66,6 +66,15 @@ def test_a_jump_out_of_ten_thousand_turns_counts_all_of_them():
     assert made.shortest_ms == 100 + 900 + 2000
 
 
+def test_an_abort_in_the_last_of_ten_thousand_turns_counts_all_of_them():
+    wait = "wait until B.temperature > 90 C timeout 900 ms else abort"
+    body = f"repeat 5:\n    repeat 2000:\n        fire A at 5 % for 100 ms\n        {wait}\n    wait 1 s\n"
+
+    made = report(body + "on fault:\n    fire A at 10 % for 1 s")
+
+    assert (coil(made, "A").orders, coil(made, "A").on_ms) == (10_001, 1_001_000)
+
+
 def test_jumps_out_of_nested_loops_count_the_turns_of_both():
     inner = "        fire A at 5 % for 100 ms\n        wait until B.temperature > 90 C timeout 900 ms else end\n"
     body = (
@@ -110,10 +119,10 @@ def test_a_joint_stands_after_an_abort_where_it_was_on_its_way():
         "A.temperature > 90 C", "R.angle > 25 deg"
     )
 
-    fast = limits(body + " abort\non fault:\n    move R to 0 deg over 110 ms", hand_robot())
+    body += " abort\non fault:\n    wait 2 s\n    move R to 0 deg over {} ms"
 
-    assert fast == []
-    assert limits(body + " abort\non fault:\n    move R to 0 deg over 90 ms", hand_robot()) == [("E318", 5, 26)]
+    assert limits(body.format(110), hand_robot()) == []
+    assert limits(body.format(90), hand_robot()) == [("E318", 6, 26)]
 
 
 def test_the_camera_may_be_lost_while_a_joint_stands_anywhere():
