@@ -55,7 +55,18 @@ repeat 3:
     wait until pitch > 170 deg timeout 50 ms else continue
     wait until $next.temperature > 100 C timeout 50 ms else continue
 wait until supply.current > 9000 mA timeout 50 ms else continue
+note "half of it"
+hold A100 at 45 C with 30 % for 300 ms
+repeat 2:
+    wait until all.martensite < 1 % timeout 50 ms else rest
+    wait 1 s
+label rest
+wait until any.resistance > 300 ohm timeout 50 ms else continue
+wait until time > 100 s timeout 50 ms else continue
 wait until roll > 170 deg timeout 50 ms else abort
+on fault:
+    note "aborted"
+    fire A010 at 30 % for 100 ms
 """
 
 
