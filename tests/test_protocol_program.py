@@ -182,7 +182,8 @@ BAD = {
         "by itself at the end",
     ),
     "a coil not aimed on every way": (
-        program.wait(CONDITION, 1, 2) + AIM + program.label(0) + program.aimed(0, 1, 1) + program.halt(), "no coil",
+        program.wait(CONDITION, 1, 2) + AIM + program.label(0) + program.aimed(0, 1, 1) + program.halt(),
+        "no coil",
     ),
     "a time beyond the clock": (program.guard(Condition(16, 0, 1, 0, 1 << 30)) + program.halt(), "a time of"),
     "too long": (program.delay(1) * 30 + program.halt(), "at most 100"),
