@@ -17,10 +17,10 @@ import yaml
 
 from hil_sim.worlds.micropython import interpreter
 from host.gait.compiler import compile_script
-from host.gait.layout import layout
+from host.gait.forms.layout import layout
+from host.gait.forms.treejson import as_json
 from host.gait.plan import Fire, walk
 from host.gait.script import load
-from host.gait.treejson import as_json
 from host.profile import read_profile
 
 ROOT = Path(__file__).parent.parent

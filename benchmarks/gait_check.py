@@ -14,7 +14,7 @@ from pathlib import Path
 from host.gait.checker import check
 from host.gait.compiler import compile_script
 from host.gait.forecast import foretell
-from host.gait.parser import grammar, parse_file
+from host.gait.reading.parser import grammar, parse_file
 from host.gait.script import loads
 from host.profile import read_profile
 from protocol.program import disassemble

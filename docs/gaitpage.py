@@ -11,13 +11,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 from docs.protocolpage import ARGUMENTS
-from host.gait import clauses, lines, motions, sources, units
-from host.gait.expand import COUNT_MAX
-from host.gait.orders import CUTOFF_MAX_DECIDEGC
+from host.gait import units
+from host.gait.reading import lines
 from host.gait.units import Quantity
+from host.gait.working import clauses, motions, sources
+from host.gait.working.expand import COUNT_MAX
+from host.gait.working.orders import CUTOFF_MAX_DECIDEGC
 from protocol import program
 
-GRAMMAR = (Path(__file__).parents[1] / "host" / "gait" / "gait.lark").read_text(encoding="utf-8")
+GRAMMAR = (Path(__file__).parents[1] / "host" / "gait" / "reading" / "gait.lark").read_text(encoding="utf-8")
 Table = Callable[[Sequence[str], Iterable[tuple[str, ...]]], str]
 HIDDEN = ("broken", "broken_block")  # what a line that could not be read becomes
 STATEMENTS = ("_line", "_order", "_block")  # the rules that list them

@@ -27,8 +27,8 @@ from docs import (
 from host import errors
 from host.cli import main as softrig
 from host.cli.explain import JOINTS
-from host.gait import treejson
 from host.gait.errors import ROWS
+from host.gait.forms import treejson
 from protocol import causes
 
 ROOT = Path(__file__).parents[1]

@@ -7,12 +7,12 @@ language, a byte each.
 from host.gait.checker import check
 from host.gait.compiler import compile_script
 from host.gait.diagnostics import GaitError
-from host.gait.layout import layout, same
-from host.gait.parser import parse_file
+from host.gait.forms.layout import layout, same
+from host.gait.forms.writer import written
+from host.gait.reading.parser import parse_file
+from host.gait.reading.syntax import KEYWORDS
 from host.gait.script import loads
-from host.gait.syntax import KEYWORDS
 from host.gait.units import UNITS
-from host.gait.writer import written
 from protocol import verify
 from tests.gait_scripts import profile_of
 

@@ -4,8 +4,8 @@ import doctest
 import json
 import re
 
-from host.gait.formatting import formatted, made
-from host.gait.treejson import reads
+from host.gait.forms.formatting import formatted, made
+from host.gait.forms.treejson import reads
 from tests.gait_scripts import ROOT
 from tests.test_gait_json import VALIDATOR, tree
 

@@ -7,7 +7,7 @@ import pytest
 
 from host.gait import builder
 from host.gait.builder import Gait
-from host.gait.parser import parse_file
+from host.gait.reading.parser import parse_file
 from tests.gait_scripts import HEAD, circular, compiled, round_robot
 
 STATEMENTS = [

@@ -9,7 +9,7 @@ import pytest
 
 from host.gait.checker import check
 from host.gait.diagnostics import Problems
-from host.gait.trial import Trial
+from host.gait.trial.trial import Trial
 from tests.gait_scripts import compiled, report, round_robot
 
 STEP_MS = 5

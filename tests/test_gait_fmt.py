@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 
 from host.cli import main
 from host.gait.diagnostics import GaitError
-from host.gait.formatting import formatted
-from host.gait.layout import layout, same
-from host.gait.parser import parse_file
-from host.gait.writer import decimal, statement
+from host.gait.forms.formatting import formatted
+from host.gait.forms.layout import layout, same
+from host.gait.forms.writer import decimal, statement
+from host.gait.reading.parser import parse_file
 from tests.gait_scripts import HEAD, ROOT
 from tests.gait_strategy import examples
 from tests.test_gait_random import pieces

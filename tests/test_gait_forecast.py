@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 
 from host.gait.compiler import compile_script
-from host.gait.course import ABORTED, GUARDED
 from host.gait.forecast import follow, foretell, model_of
+from host.gait.model.course import ABORTED, GUARDED
 from host.gait.script import load
 from tests.gait_scripts import ROOT, circular, compiled, hand_robot, profile_of
 

@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 from host.cli import main
-from host.gait.formatting import made
-from host.gait.jsonkinds import TreeError
-from host.gait.layout import layout, same
-from host.gait.parser import parse_file
-from host.gait.treejson import as_json, read, reads, schema
+from host.gait.forms.formatting import made
+from host.gait.forms.jsonkinds import TreeError
+from host.gait.forms.layout import layout, same
+from host.gait.forms.treejson import as_json, read, reads, schema
+from host.gait.reading.parser import parse_file
 from tests.gait_scripts import ROOT
 from tests.gait_strategy import examples
 from tests.test_gait_fmt import FAIR, GAITS, HEADS, ONE_LINERS

@@ -6,7 +6,7 @@ import pytest
 
 from host.gait import tree
 from host.gait.diagnostics import GaitError
-from host.gait.parser import parse_file, parse_value
+from host.gait.reading.parser import parse_file, parse_value
 from host.gait.units import decimal
 from tests.gait_scripts import compiled
 

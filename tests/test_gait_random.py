@@ -6,10 +6,10 @@ from hypothesis import strategies as st
 from host.gait.checker import check
 from host.gait.compiler import compile_script
 from host.gait.diagnostics import GaitError
-from host.gait.parser import parse_file
 from host.gait.plan import Move, Press, Wait, walk
+from host.gait.reading.parser import parse_file
+from host.gait.reading.syntax import KEYWORDS
 from host.gait.script import loads
-from host.gait.syntax import KEYWORDS
 from protocol import program
 from protocol.program import HEADER_BYTES, disassemble, read_header
 from protocol.verify import check_code

@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 
 from host.gait import tree
 from host.gait.compiler import compile_script
-from host.gait.formatting import formatted, made
-from host.gait.layout import layout, same
-from host.gait.parser import parse_file
+from host.gait.forms.formatting import formatted, made
+from host.gait.forms.layout import layout, same
+from host.gait.forms.treejson import as_json, reads
+from host.gait.reading.parser import parse_file
 from host.gait.script import loads, walk
-from host.gait.treejson import as_json, reads
 from protocol.program import disassemble
 from protocol.verify import check_code
 from tests.gait_scripts import profile_of

@@ -156,7 +156,7 @@ def test_an_order_before_a_wait_may_still_be_on_when_the_wait_ends_and_counts_as
 
 
 def test_more_ways_than_can_be_followed_are_refused(monkeypatch):
-    monkeypatch.setattr("host.gait.trial.EVENTS_MAX", 3000)
+    monkeypatch.setattr("host.gait.trial.trial.EVENTS_MAX", 3000)
     turns = "\n".join(
         f"repeat 65535:\n    fire {label} at 1 % for 7 ms\n    {LATER} end\n    wait 3 ms" for label in "ABCDEFGH" * 9
     )

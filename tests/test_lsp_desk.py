@@ -8,9 +8,9 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcInvalidParams
 from pygls.workspace import PositionCodec
 
-from host.gait import sources
+from host.gait.reading.syntax import CLAUSES, FORMS
 from host.gait.script import read_text
-from host.gait.syntax import CLAUSES, FORMS
+from host.gait.working import sources
 from host.lsp import words
 from host.lsp.answers import Answers
 from host.lsp.hover import hover

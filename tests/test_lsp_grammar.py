@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 
-from host.gait import sources
-from host.gait.parser import grammar, parse_file
-from host.gait.subjects import QUANTIFIERS
-from host.gait.syntax import FORMS, KEYWORDS
+from host.gait.reading.parser import grammar, parse_file
+from host.gait.reading.syntax import FORMS, KEYWORDS
 from host.gait.units import UNITS
+from host.gait.working import sources
+from host.gait.working.subjects import QUANTIFIERS
 
 base = pytest.importorskip("textmate_grammar.parsers.base")  # no ready package for Linux on ARM
 

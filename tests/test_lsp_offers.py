@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from host.gait.lines import code_part
+from host.gait.reading.lines import code_part
 from host.lsp.completion import complete
 from tests.gait_scripts import profile_of
 from tests.lsp_samples import FIRST_FREE, HEAD, ROOT, URI, desk_with

@@ -8,8 +8,8 @@ import pytest
 from rich.console import Console
 
 from host.gait.compiler import compile_script
-from host.gait.course import Course, Gap
 from host.gait.forecast import follow, model_of
+from host.gait.model.course import Course, Gap
 from host.gait.script import load, loads
 from host.preview.compare import changes
 from host.preview.drawing import wide

@@ -12,7 +12,7 @@ import click
 from host.cli.options import json_option
 from host.cli.output import emit, writing
 from host.gait.diagnostics import GaitError
-from host.gait.formatting import Formatted, replace_file, tried
+from host.gait.forms.formatting import Formatted, replace_file, tried
 
 STDIN = "-"
 

@@ -13,11 +13,11 @@ from host.cli.fmt import STDIN
 from host.cli.options import json_option
 from host.cli.output import emit, json_line, writing
 from host.gait.diagnostics import GaitError
-from host.gait.formatting import made, read_script, replace_file
-from host.gait.layout import layout
-from host.gait.parser import parse_file
-from host.gait.treejson import as_json as in_json
-from host.gait.treejson import reads, schema
+from host.gait.forms.formatting import made, read_script, replace_file
+from host.gait.forms.layout import layout
+from host.gait.forms.treejson import as_json as in_json
+from host.gait.forms.treejson import reads, schema
+from host.gait.reading.parser import parse_file
 
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -30,18 +30,18 @@ from fractions import Fraction
 from pathlib import Path
 from typing import NamedTuple, Self
 
-from host.gait import phrases
 from host.gait import tree as trees
 from host.gait.checker import check
 from host.gait.compiler import Compiled, compile_script
-from host.gait.forecast import foretell
-from host.gait.formatting import replace_file
-from host.gait.gathering import NAME, Gathering, plain
-from host.gait.layout import NOWHERE, Sheet
-from host.gait.phrases import Value
+from host.gait.forecast import follow, model_of
+from host.gait.forms import phrases
+from host.gait.forms.formatting import replace_file
+from host.gait.forms.gathering import NAME, Gathering, plain
+from host.gait.forms.layout import NOWHERE, Sheet
+from host.gait.forms.phrases import Value
+from host.gait.forms.writer import statement as head
 from host.gait.script import Script, loads
 from host.gait.verdict import Report
-from host.gait.writer import statement as head
 from host.link import open_link
 from host.preview.picture import picture
 from host.profile import Profile
@@ -300,7 +300,8 @@ class Gait(Gathering):
         checked = self._checked
         if checked is None or self.is_open or checked.sheet != self.sheet():
             return None
-        return picture(foretell(checked.compiled, checked.address, max(LEAST_MS, checked.longest_ms // POINTS)))
+        model = model_of(checked.address, checked.compiled.profile)
+        return picture(follow(checked.compiled, model, max(LEAST_MS, checked.longest_ms // POINTS)))
 
 
 def _some(coils: tuple[str, ...]) -> tuple[trees.Coil, ...]:

@@ -11,14 +11,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from math import ceil
 
-from host.gait.bounds import hold_to_limits, nested
-from host.gait.coiltrial import STEP_MS
 from host.gait.compiler import Compiled
 from host.gait.diagnostics import Problems, in_order
 from host.gait.plan import Delay, Guard, Label, Loop, OnFault, Op, Press, Wait, walk
 from host.gait.tree import Place
-from host.gait.trial import TooLong, Trial
+from host.gait.trial.coiltrial import STEP_MS
+from host.gait.trial.trial import TooLong, Trial
 from host.gait.verdict import CoilReport, JointReport, Report
+from host.gait.working.bounds import hold_to_limits, nested
 from host.profile import Profile
 from protocol import program
 

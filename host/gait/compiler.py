@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from host.gait.bounds import hold_to_limits
 from host.gait.diagnostics import Problems
-from host.gait.expand import expand
 from host.gait.plan import Op, Step, encode
-from host.gait.scope import Value
 from host.gait.script import Script
+from host.gait.working.bounds import hold_to_limits
+from host.gait.working.expand import expand
+from host.gait.working.scope import Value
 from host.profile import Profile
 from protocol import program
 

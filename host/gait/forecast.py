@@ -14,10 +14,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from host.gait.compiler import Compiled
-from host.gait.course import ABORTED, GIVEN_UP, GUARDED, Course, Track
 from host.gait.diagnostics import Diagnostic, Problems, in_order
+from host.gait.model.course import ABORTED, GIVEN_UP, GUARDED, Course, Track
+from host.gait.model.play import Play
 from host.gait.plan import Step
-from host.gait.play import Play
 from host.gait.tree import Place
 from host.predictors import Coils, Unpredicted, predictor
 from host.profile import Profile

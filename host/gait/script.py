@@ -14,8 +14,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from host.gait.diagnostics import Diagnostic, GaitError, Problems
-from host.gait.lines import LINE_MAX, LINES_MAX
-from host.gait.parser import parse_file
+from host.gait.reading.lines import LINE_MAX, LINES_MAX
+from host.gait.reading.parser import parse_file
 from host.gait.tree import Broken, File, Include, Place, Robot, Statement
 
 BYTES_MAX = LINES_MAX * LINE_MAX

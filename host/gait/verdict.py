@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 
 from host.gait.diagnostics import Diagnostic, exit_code
-from host.gait.jointunits import UNITS
+from host.gait.working.jointunits import UNITS
 from host.profile import Profile
 
 

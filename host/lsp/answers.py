@@ -12,7 +12,7 @@ from pygls.workspace import PositionCodec
 
 from host.errors import BadRequest
 from host.gait.diagnostics import Diagnostic, GaitError
-from host.gait.formatting import formatted
+from host.gait.forms.formatting import formatted
 from host.gait.tree import Place
 from host.lsp import outline as names
 from host.lsp.completion import Item, complete

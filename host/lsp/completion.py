@@ -10,11 +10,12 @@ from dataclasses import dataclass
 from lark import Token
 from lark.exceptions import LarkError
 
-from host.gait import sources, units
-from host.gait.parser import grammar
-from host.gait.subjects import QUANTIFIERS
-from host.gait.syntax import FORMS, KEYWORDS, NAMES
-from host.gait.turns import BACK
+from host.gait import units
+from host.gait.reading.parser import grammar
+from host.gait.reading.syntax import FORMS, KEYWORDS, NAMES
+from host.gait.working import sources
+from host.gait.working.subjects import QUANTIFIERS
+from host.gait.working.turns import BACK
 from host.lsp import words
 from host.lsp.names import here
 from host.lsp.view import View

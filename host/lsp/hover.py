@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from host.gait.errors import BY_CODE
-from host.gait.syntax import FORMS, KEYWORDS
+from host.gait.reading.syntax import FORMS, KEYWORDS
 from host.lsp import words
 from host.lsp.names import Symbol
 from host.lsp.places import within

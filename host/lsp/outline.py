@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from host.errors import BadRequest
 from host.gait import tree
-from host.gait.syntax import KEYWORDS, NAMES
+from host.gait.reading.syntax import KEYWORDS, NAMES
 from host.gait.tree import Place
 from host.lsp.names import Symbol
 from host.lsp.places import within

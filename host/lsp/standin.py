@@ -10,11 +10,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import fields
 from typing import Any, TypeVar
 
-from host.gait import sources, tree
+from host.gait import tree
 from host.gait.diagnostics import Diagnostic
 from host.gait.script import Script, walk
 from host.gait.tree import Coil as Named
 from host.gait.tree import Name
+from host.gait.working import sources
 from host.limits import (
     CameraLimits,
     Cell,

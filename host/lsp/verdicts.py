@@ -11,11 +11,11 @@ from pathlib import Path
 from host.gait import tree
 from host.gait.checker import check
 from host.gait.compiler import Compiled, compile_script
-from host.gait.declare import DECLARATIONS
 from host.gait.diagnostics import Diagnostic, GaitError
 from host.gait.forecast import foretell
 from host.gait.script import Read, Script, loads
 from host.gait.tree import Place
+from host.gait.working.declare import DECLARATIONS
 from host.lsp.standin import of_the_language, stand_in
 from host.profile import Profile
 

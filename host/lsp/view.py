@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 
 from host.gait.diagnostics import Diagnostic
-from host.gait.lines import COMMENT
+from host.gait.reading.lines import COMMENT
 from host.gait.script import Script
 from host.gait.tree import File
 from host.lsp.names import Index, Symbol

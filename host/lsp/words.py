@@ -5,8 +5,8 @@ from __future__ import annotations
 from fractions import Fraction
 
 from host.gait import units
-from host.gait.jointunits import UNITS
 from host.gait.units import Quantity
+from host.gait.working.jointunits import UNITS
 from host.limits import CoilLimits, ServoLimits
 from host.profile import Profile
 from protocol import program

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from difflib import SequenceMatcher
 
 from host.errors import BadRequest
-from host.gait.course import Track
 from host.gait.forecast import Forecast
+from host.gait.model.course import Track
 from host.gait.plan import Step
 
 Lines = tuple[tuple[int, str], ...]  # number and text

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from host.gait.course import Course, Track
 from host.gait.forecast import Forecast
+from host.gait.model.course import Course, Track
 
 
 def fields(forecast: Forecast) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from host.gait.course import Course
+from host.gait.model.course import Course
 from host.profile import Profile
 
 Point = tuple[float, float]  # ms, value

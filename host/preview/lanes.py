@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from host.gait.course import Bar, Course, Track
+from host.gait.model.course import Bar, Course, Track
 from host.preview.drawing import Drawing, thinned
 from host.preview.joints import Targets
 from host.preview.scale import Times, Values, ticks

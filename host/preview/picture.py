@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from host.gait.course import Course, Track
 from host.gait.forecast import Forecast
+from host.gait.model.course import Course, Track
 from host.preview.compare import CoilChange, Lines, changes
 from host.preview.drawing import Drawing, shortened, wide
 from host.preview.joints import Targets, targets_of

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, floor, log10
 
-from host.gait.course import Course, Gap
+from host.gait.model.course import Course, Gap
 
 GAP_SHARE = 0.06  # of all that is drawn, for turns that are not told
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from host.gait.compiler import Compiled
-from host.gait.course import Course, Pause
+from host.gait.model.course import Course, Pause
 from host.gait.plan import Label, Note, walk
 from host.preview.drawing import Drawing, shortened, wide
 from host.preview.lanes import LEFT, SMALL

@@ -14,8 +14,8 @@ from rich.table import Table
 from rich.text import Text
 
 from host.cli.output import printable
-from host.gait.course import Bar, Course, Track
 from host.gait.forecast import Forecast
+from host.gait.model.course import Bar, Course, Track
 from host.preview.compare import Changes, Pair
 from host.preview.joints import Targets, targets_of
 from host.preview.scale import Times, instants, times_of

@@ -1,0 +1,1 @@
+"""Scripts in other forms: laid out anew, as JSON, from Python."""

@@ -1,0 +1,1 @@
+"""What a plan comes to on a model of its robot's coils."""
