@@ -83,8 +83,9 @@ class LogWriter:
 
     def note(self, event: Event, step: Step) -> None:
         """Keep what a note of the script says, when the robot has come to it."""
-        row = {"host_ms": event.host_ms, "now_ms": event.now_ms, "step": step.number, "line": step.place.line}
-        self._add("notes", event.host_ms, {**row, "text": step.note})
+        row = {"host_ms": event.host_ms, "now_ms": event.now_ms, "step": step.number}
+        place = {"file": step.place.file, "line": step.place.line}
+        self._add("notes", event.host_ms, {**row, **place, "text": step.note})
 
     def link(self, news: LinkNews) -> None:
         """Keep what became of the line, and how the clocks stood."""

@@ -97,7 +97,9 @@ def fault(event: Event, recording: Recording, compiled: Compiled) -> Fields:
         "value": event.value,
         "unit": unit_of(row, compiled.profile.unit),
         "at_s": recording.seconds(event.host_ms),
+        "file": step.place.file if step else None,
         "line": step.place.line if step else None,
+        "where": step.where if step else None,
     }
 
 
@@ -113,7 +115,7 @@ def lines(fields: Fields) -> Iterator[str]:
     yield from observed_lines(fields.get("observed", {}))
     yield from driven_lines(fields)
     for item in fields["faults"]:
-        where = f", line {item['line']}" if item["line"] else ""
+        where = f", {item['where']}" if item["where"] else ""
         kind = "joint" if item["coil"] in fields.get("joints", ()) else "coil"
         coil = f", {kind} {item['coil']}" if item["coil"] else ""
         value = f" {amount(item['value'], item['unit'])}" if item["unit"] else ""

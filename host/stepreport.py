@@ -27,7 +27,7 @@ def steps(recording: Recording, compiled: Compiled, is_done: bool) -> Fields:
 def step_lines(fields: Fields) -> Iterator[str]:
     """Yield the notes in their order, what was caught, and how to go on from where the script ended."""
     for note in fields["notes"]:
-        yield f"  note             {note['text']} (at {note['t_s']:.2f} s, line {note['line']})"
+        yield f"  note             {note['text']} (at {note['t_s']:.2f} s, {note['where']})"
     caught, ended = fields["caught"], fields["ended_in"]
     if caught:
         yield f"  on fault         from {caught['at_s']:.2f} s on: {caught['code']} {caught['cause']}"
@@ -37,8 +37,10 @@ def step_lines(fields: Fields) -> Iterator[str]:
 
 def _note(event: Event, recording: Recording, compiled: Compiled) -> Fields:
     step = compiled.step(event.step)
-    line, text = (step.place.line, step.note) if step else (None, "")
-    return {"t_s": recording.seconds(event.host_ms), "step": event.step, "line": line, "text": text}
+    fields = {"t_s": recording.seconds(event.host_ms), "step": event.step}
+    if step is None:
+        return {**fields, "file": None, "line": None, "where": f"step {event.step}", "text": ""}
+    return {**fields, "file": step.place.file, "line": step.place.line, "where": step.where, "text": step.note}
 
 
 def _caught(event: Event, recording: Recording) -> Fields:
@@ -53,4 +55,4 @@ def _ended_in(recording: Recording, compiled: Compiled) -> Fields | None:
     begun = [event.step for event in recording.events if event.event == "step"]
     number = last.step if last and last.step else begun[-1] if begun else 0
     step = compiled.step(number)
-    return {"step": number, "line": step.place.line, "text": str(step)} if step else None
+    return {"step": number, "file": step.place.file, "line": step.place.line, "text": str(step)} if step else None

@@ -41,7 +41,7 @@ TOPICS: dict[str, dict[str, Any]] = {
         "event": TEXT,
         "coil": {"type": ["string", "null"]},
     },
-    "notes": {**dict.fromkeys(("host_ms", "now_ms", "step", "line"), NUMBER), "text": TEXT},
+    "notes": {**dict.fromkeys(("host_ms", "now_ms", "step", "line"), NUMBER), "file": TEXT, "text": TEXT},
     "stops": {
         **dict.fromkeys(("host_ms", "now_ms", "code"), NUMBER),
         "state": TEXT,

@@ -135,8 +135,10 @@ def test_notes_and_the_step_a_run_ended_in_are_in_report_and_log(softrig, tmp_pa
     fields = json.loads(softrig("run", str(tmp_path / "n.gait"), *BENCH, "--log", str(tmp_path / "n.mcap"), "--json")
                         .out.splitlines()[0])  # fmt: skip
 
-    assert fields["notes"] == [{"t_s": pytest.approx(0.06, abs=0.02), "step": 2, "line": 5, "text": "at 5 %"}]
+    place = {"file": str(tmp_path / "n.gait"), "line": 5}
+    told = {"t_s": pytest.approx(0.06, abs=0.02), "step": 2, **place, "where": "line 5", "text": "at 5 %"}
+    assert fields["notes"] == [told]
     assert (fields["caught"]["code"], fields["caught"]["step"], fields["ended_in"]["step"]) == ("F11", 3, 3)
     assert [(fault["code"], fault["line"]) for fault in fields["faults"]] == [("F11", 6)]
     (row,) = read_log(tmp_path / "n.mcap").rows["notes"]
-    assert (row["step"], row["line"], row["text"]) == (2, 5, "at 5 %")
+    assert {key: row[key] for key in ("step", "file", "line", "text")} == {"step": 2, **place, "text": "at 5 %"}

@@ -7,7 +7,7 @@ import pytest
 from host.drivenreport import coils
 from host.errors import Mismatch
 from host.gait.compiler import compile_script
-from host.gait.script import loads
+from host.gait.script import load, loads
 from host.profile import read_profile
 from host.recording import Recording
 from host.records import Event, Telemetry
@@ -101,6 +101,21 @@ def test_a_fault_is_told_with_its_code_coil_value_and_line(facts):
     assert fault["code"] == "F05"
     assert (fault["coil"], fault["value"], fault["unit"]) == ("A", 1213, "0.1 C")
     assert (fault["at_s"], fault["line"]) == (1.0, 4)
+
+
+def test_a_line_of_an_included_file_is_told_with_the_file_and_the_line_that_led_there(profile, facts, tmp_path):
+    (tmp_path / "push.gait").write_text('gait 1\ndef push(c):\n    fire $c at 60 % for 600 ms\n    note "pushed"\n')
+    (tmp_path / "main.gait").write_text('gait 1\nrobot circular\ninclude "push.gait"\npush(A)\n')
+    seen = recording()
+    seen.events.insert(1, Event(900, 900, "noted", 0, 2, None, 0))
+    seen.events[-1] = Event(1003, 1000, "tripped", 105, 1, "A", 1213)
+
+    own = replace(facts, compiled=compile_script(load(tmp_path / "main.gait"), profile))
+    fields = report(Ending("fault", seen.events[-1]), seen, own)
+
+    places = [(item["file"], item["line"]) for item in (*fields["faults"], *fields["notes"], fields["ended_in"])]
+    assert places == [(str(tmp_path / "push.gait"), line) for line in (3, 4, 3)]
+    assert f", line 3 of {tmp_path / 'push.gait'}, called on line 4, coil A:" in "\n".join(lines(fields))
 
 
 def test_a_report_of_nothing_is_still_a_report(facts):

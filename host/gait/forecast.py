@@ -87,7 +87,7 @@ class Forecast:
         return {
             "known": True,
             "trip_degc": self.compiled.profile.coil.trip_degc,
-            "ways": {way or "only": {"end_ms": course.end_ms, "outcome": course.outcome, "line": _line(course.where)}
+            "ways": {way or "only": {"end_ms": course.end_ms, "outcome": course.outcome, **_place(course.where)}
                      for way, course in self.ways.items()},
             "coils": {peak.track.label: _fields(peak) for peak in self.peaks()},
         }  # fmt: skip
@@ -110,11 +110,11 @@ class Forecast:
         """Yield how the script would end otherwise than at its end, and what the two ways are."""
         for way, course in self.ways.items():
             told = f" {WAYS[way]}" if way else ""
-            if course.outcome == ABORTED and course.where:
-                yield f"  predicted: the wait on line {course.where.line} runs out, the script is aborted{told}"
-            if course.outcome == GUARDED and course.where:
-                after = f"after {course.end_ms / 1000:.1f} s"
-                yield f"  predicted: the guard on line {course.where.line} trips {after}{told}"
+            where = course.where.told(self.compiled.script.main.name) if course.where else ""
+            if course.outcome == ABORTED:
+                yield f"  predicted: the wait on {where} runs out, the script is aborted{told}"
+            if course.outcome == GUARDED:
+                yield f"  predicted: the guard on {where} trips after {course.end_ms / 1000:.1f} s{told}"
             if course.outcome == GIVEN_UP:
                 yield f"  predicted for the first {course.end_ms / 1000:.0f} s only: the rest takes too much work"
 
@@ -160,15 +160,15 @@ def _play(compiled: Compiled, coils: Coils | None, early: bool, every_ms: int) -
 def _fields(peak: Peak) -> dict[str, object]:
     track = peak.track
     fields: dict[str, object] = {"peak_degc": round(peak.degc, 2), "at_ms": peak.at_ms, "way": peak.way or "only"}
-    fields |= {"line": peak.step.place.line if peak.step else None, "on_ms": track.on_ms}
+    fields |= {**_place(peak.step.place if peak.step else None), "on_ms": track.on_ms}
     fields |= {"energy_mj": round(track.energy_mj, 1)}
     return fields | ({"any_of": list(track.reach)} if track.reach else {})
 
 
 def _written(step: Step | None) -> str:
     """Return the line of a step."""
-    return f"line {step.place.line}" if step else "before any order"
+    return step.where if step else "before any order"
 
 
-def _line(place: Place | None) -> int | None:
-    return place.line if place else None
+def _place(place: Place | None) -> dict[str, object]:
+    return {"file": place.file if place else None, "line": place.line if place else None}

@@ -20,6 +20,17 @@ class Step:
     calls: tuple[Place, ...] = ()
     note: str = ""  # what a note says, with its params put in
 
+    @property
+    def outer(self) -> Place:
+        """Return the place in the script itself: that of the outermost call, if any."""
+        return self.calls[0] if self.calls else self.place
+
+    @property
+    def where(self) -> str:
+        """Return the line in words; of a line in an included file also the line of the script that led there."""
+        own, outer = self.place.told(self.outer.file), self.outer
+        return own if self.place.file == outer.file else f"{own}, called on line {outer.line}"
+
     def __str__(self) -> str:
         places = [self.place, *reversed(self.calls)]
         return f"{self.text} ({', called from '.join(f'{place.file}:{place.line}' for place in places)})"

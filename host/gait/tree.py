@@ -19,6 +19,10 @@ class Place:
     column: int
     end_column: int
 
+    def told(self, main: str) -> str:
+        """Return the line in words, with its file where that is not `main`."""
+        return f"line {self.line}" if self.file == main else f"line {self.line} of {self.file}"
+
     def upto(self, other: Place) -> Place:
         """Return the stretch from here to the end of `other`, within this line."""
         return Place(self.file, self.line, self.column, max(other.end_column, self.end_column))

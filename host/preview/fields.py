@@ -22,17 +22,17 @@ def fields(forecast: Forecast) -> dict[str, Any]:
 def _way(course: Course, forecast: Forecast) -> dict[str, Any]:
     compiled = forecast.compiled
 
-    def line(number: int) -> int | None:
+    def place(number: int) -> dict[str, object]:
         step = compiled.step(number)
-        return step.place.line if step else None
+        return {"file": step.place.file, "line": step.place.line} if step else {"file": None, "line": None}
 
     return {
         "end_ms": course.end_ms,
         "coils": {track.label: _coil(track) for track in course.driven},
-        "steps": [{"at_ms": mark.at_ms, "step": mark.step, "line": line(mark.step)} for mark in course.marks],
+        "steps": [{"at_ms": mark.at_ms, "step": mark.step, **place(mark.step)} for mark in course.marks],
         "waits": [
             {"begin_ms": pause.begin_ms, "end_ms": pause.end_ms, "met": pause.met, "known": pause.known,
-             "line": line(pause.step)}
+             **place(pause.step)}
             for pause in course.pauses
         ],
         "motions": [

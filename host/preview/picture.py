@@ -50,7 +50,7 @@ def summary(forecast: Forecast) -> str:
     parts = [f"{ends} s"] + ([f"{len(peaks)} coils driven"] if peaks else [])
     if peaks and not forecast.why_not:
         hottest = max(peaks, key=lambda peak: peak.degc)
-        line = f" (line {hottest.step.place.line})" if hottest.step else ""
+        line = f" ({hottest.step.where})" if hottest.step else ""
         parts.append(f"hottest {hottest.track.label}: {hottest.degc:.0f} °C after {hottest.at_ms / 1000:.1f} s{line}")
         parts.append(f"the robot trips at {forecast.compiled.profile.coil.trip_degc} °C")
     elif peaks:

@@ -31,7 +31,7 @@ def draw_lines(
         if x - last >= APART:
             drawing.line("faint", x, y + 12, x, foot)
             last = x
-        text = str(step.place.line)
+        text = str(step.outer.line)
         if x >= free:
             drawing.text(x + 1, y + 9, text, "quiet", 9)
             free = x + 1 + wide(text, 9) + 4

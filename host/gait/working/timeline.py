@@ -86,7 +86,7 @@ def _report_conflicts(events: Iterable[Event], problems: Problems) -> None:
         busy = [entry for entry in busy if entry[0] > at_ms]
         for _, other, earlier in busy:
             if other != child and _kept(earlier) == _kept(order) and earlier.mask & order.mask:
-                help = f"the other order is on line {earlier.node.place.line}"
+                help = f"the other order is on {earlier.node.place.told(order.node.place.file)}"
                 problems.add(order.node.place, "E135", CONFLICTS[type(order)], help)
         busy.append((at_ms + order.time_ms, child, order))
 
