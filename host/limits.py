@@ -67,6 +67,11 @@ class CoilLimits:
     ms_degc: int
     mf_degc: int
 
+    def current_ma(self, supply_mv: int, duty_permille: int) -> int:
+        """Return the mean current of a coil at that duty and supply, rounded up."""
+        full_ma = -(-1000 * supply_mv // (self.resistance_mohm + self.wiring_mohm))
+        return -(-full_ma * duty_permille // 1000)
+
 
 @dataclass(frozen=True, slots=True)
 class ServoLimits:

@@ -54,11 +54,6 @@ class CoilTrial:
         self.others_at_ms = now_ms
 
 
-def full_ma(supply_mv: int, limits: CoilLimits) -> int:
-    """Return the current of a coil that is on without a break, at the nominal supply, rounded up."""
-    return -(-1000 * supply_mv // (limits.resistance_mohm + limits.wiring_mohm))
-
-
 def heat_uj(heat_uj: int, power_uw: int, time_ms: int, limits: CoilLimits) -> int:
     """Return the heat after `time_ms`: the firmware's steps in closed form, with all they may round up."""
     leak_ms = limits.heat_leak_ms

@@ -20,7 +20,7 @@ from host.gait import tree
 from host.gait.diagnostics import Problems
 from host.gait.plan import Aim, Fire, Op, Wait, walk
 from host.gait.trial.clock import Clock
-from host.gait.trial.coiltrial import STEP_MS, CoilTrial, energy_uj, full_ma, heat_uj
+from host.gait.trial.coiltrial import STEP_MS, CoilTrial, energy_uj, heat_uj
 from host.profile import Profile
 from protocol import program
 
@@ -35,7 +35,7 @@ class Heating:
         self._all = [CoilTrial(reach=1 << channel) for channel in range(self._count)]
         self.at_once_peak = 0
         self.current_peak_ma = 0
-        self.full_ma = self.full_uw = 0
+        self.full_uw = 0
         self._profile, self._problems, self._clock = profile, problems, clock
         self._best: list[CoilTrial] = []
         if not self._count:
@@ -44,7 +44,6 @@ class Heating:
         self._all += [CoilTrial() for _ in range(program.AIMS_MAX)]
         supply_mv, coil_mohm = profile.supply_mv, profile.coil.resistance_mohm
         loop_mohm = coil_mohm + profile.coil.wiring_mohm
-        self.full_ma = full_ma(supply_mv, self._limits)
         self.full_uw = ceil(Fraction(1000 * supply_mv * supply_mv * coil_mohm, loop_mohm * loop_mohm))
 
     @property
@@ -173,7 +172,8 @@ class Heating:
             self._settle(channel)
             self._order(channel, op)
         on = [coil for coil in self._all if coil.end_ms > self._clock.now_ms]
-        current_ma = sum(-(-self.full_ma * coil.duty_permille // 1000) for coil in on)
+        supply_mv = self._profile.supply_mv
+        current_ma = sum(self._limits.current_ma(supply_mv, coil.duty_permille) for coil in on)
         self.at_once_peak = max(self.at_once_peak, len(on))
         self.current_peak_ma = max(self.current_peak_ma, current_ma)
         supply = self._profile.supply

@@ -10,7 +10,6 @@ from collections.abc import Iterable, Iterator
 from host.gait.diagnostics import Problems
 from host.gait.plan import Fire, Guard, Loop, Move, OnFault, Op, Press, Wait
 from host.gait.tree import Clause, Facing, Order, Place
-from host.gait.trial.coiltrial import full_ma
 from host.gait.working.jointunits import UNITS
 from host.profile import Profile
 from protocol import program
@@ -86,7 +85,7 @@ def _check_fire(op: Fire, profile: Profile, problems: Problems) -> None:
         message = f"an order of {op.time_ms} ms, at most {limits.hold_max_ms} ms"
         problems.add(_clause(op, "for"), "E302", message)
     count, supply = op.mask.bit_count() if op.kept is None else 1, profile.supply
-    current_ma = count * -(-full_ma(profile.supply_mv, limits) * op.duty_permille // 1000)
+    current_ma = count * limits.current_ma(profile.supply_mv, op.duty_permille)
     if count > supply.at_once_max:
         message = f"{count} coils would be on at once, at most {supply.at_once_max}"
         problems.add(op.node.place, "E304", message)
