@@ -4,7 +4,7 @@ import pytest
 
 from host.errors import BadRequest
 from host.gait.checker import check
-from host.gait.working.cut import cut
+from host.gait.cut import cut
 from protocol.program import disassemble
 from protocol.verify import check_code
 from tests.gait_scripts import CIRCLE, ball_robot, compiled, hand_robot

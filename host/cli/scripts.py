@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from host.gait.checker import check
 from host.gait.compiler import Compiled, compile_script
+from host.gait.cut import cut
 from host.gait.diagnostics import GaitError
 from host.gait.script import Script
 from host.gait.verdict import Report
-from host.gait.working.cut import cut
 from host.profile import Profile
 
 OF_SIZE = ("E307", "E308")  # limits of a program that the robot keeps whole: its bytes, and how deep its loops nest
