@@ -18,6 +18,20 @@ MAY_IMPORT = {
     "host": {"protocol", "host"},
     "hil_sim": {"hil_sim"},  # it loads protocol and firmware as the image of a board, never as its own modules
 }
+MAY_KNOW = {  # in host/gait: the rooms, and the modules at the door that they stand on; those not named here know all
+    "tree": set(),
+    "errors": set(),
+    "units": set(),
+    "diagnostics": {"errors", "tree"},
+    "plan": {"tree"},
+    "reading": {"diagnostics", "tree"},
+    "script": {"diagnostics", "reading", "tree"},
+    "working": {"diagnostics", "plan", "reading", "script", "tree", "units"},
+    "trial": {"diagnostics", "plan", "tree", "working"},
+    "model": {"plan", "tree", "trial"},
+    "forms": {"diagnostics", "reading", "script", "tree"},
+    "verdict": {"diagnostics", "working"},
+}
 ON_A_BOARD = {"array", "binascii", "collections", "gc", "hashlib", "json", "machine", "micropython", "os"}
 ON_A_BOARD |= {"struct", "sys", "time"}
 RUN_BY_THE_BOARD = ("firmware/boot.py", "firmware/start.py")
@@ -45,6 +59,17 @@ def only_allowed_layers(path: PurePosixPath, tree: ast.Module) -> Iterator[Breac
     for line, name in imports(tree):
         if name.split(".")[0] in {*PACKAGES, "tests"} - MAY_IMPORT[path.parts[0]]:
             yield line, f"{path.parts[0]} imports {name}"
+
+
+def gait_scripts_pass_from_room_to_room(path: PurePosixPath, tree: ast.Module) -> Iterator[Breach]:
+    """Text to tree, tree to plan, plan to worst case: nothing knows what comes after it."""
+    room = path.with_suffix("").parts[2:3]
+    if path.parts[:2] != ("host", "gait") or not room or room[0] not in MAY_KNOW:
+        return
+    for line, name in imports(tree, names=True):
+        parts = name.split(".")
+        if parts[:2] == ["host", "gait"] and parts[2:3] and parts[2] not in {room[0], *MAY_KNOW[room[0]]}:
+            yield line, f"{room[0]} imports {name}"
 
 
 def only_boards_know_the_machine(path: PurePosixPath, tree: ast.Module) -> Iterator[Breach]:
@@ -116,6 +141,7 @@ def docstrings(path: PurePosixPath, tree: ast.Module) -> Iterator[Breach]:
 
 RULES = (
     only_allowed_layers,
+    gait_scripts_pass_from_room_to_room,
     only_boards_know_the_machine,
     only_modules_a_board_has,
     only_absolute_imports,
@@ -134,6 +160,10 @@ PLANTED = (
     (only_allowed_layers, "hil_sim/bench.py", "from firmware.core import Core"),
     (only_allowed_layers, "firmware/core.py", "import host"),
     (only_allowed_layers, "protocol/link.py", "from firmware import core"),
+    (gait_scripts_pass_from_room_to_room, "host/gait/reading/build.py", "from host.gait.working import scope"),
+    (gait_scripts_pass_from_room_to_room, "host/gait/working/orders.py", "from host.gait import compiler"),
+    (gait_scripts_pass_from_room_to_room, "host/gait/forms/writer.py", "import host.gait.trial.trial"),
+    (gait_scripts_pass_from_room_to_room, "host/gait/plan.py", "from host.gait.script import Script"),
     (only_boards_know_the_machine, "firmware/core.py", "from machine import Pin"),
     (only_boards_know_the_machine, "firmware/drivers/pca9685.py", "import machine"),
     (only_modules_a_board_has, "firmware/core.py", "from dataclasses import dataclass"),
@@ -194,13 +224,14 @@ def is_shim(path: PurePosixPath) -> bool:
     return path.parts[:3] == IN_A_PROCESS_OF_ITS_OWN
 
 
-def imports(tree: ast.Module) -> Iterator[tuple[int, str]]:
-    """Yield (line, module) of each import anywhere in the file, also of those by name."""
+def imports(tree: ast.Module, names: bool = False) -> Iterator[tuple[int, str]]:
+    """Yield (line, module) of each import anywhere in the file, also of those by name; or what is taken from it too."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from ((node.lineno, alias.name) for alias in node.names)
         elif isinstance(node, ast.ImportFrom):
-            yield node.lineno, node.module or ""
+            taken = [f".{alias.name}" for alias in node.names] if names else [""]
+            yield from ((node.lineno, f"{node.module or ''}{name}") for name in taken)
         elif isinstance(node, ast.Call) and named(node.func) in ("import_module", "__import__"):
             yield from (
                 (node.lineno, str(argument.value)) for argument in node.args if isinstance(argument, ast.Constant)
