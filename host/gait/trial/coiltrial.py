@@ -41,6 +41,19 @@ class CoilTrial:
         self.longest_ms = max(self.longest_ms, other.longest_ms)
         self.heat_uj, self.others_uj = max(self.heat_uj, other.heat_uj), max(self.others_uj, other.others_uj)
 
+    def cut(self, left_ms: int, had_ms: int) -> None:
+        """Take it that its order, counted to its end already, has `had_ms` more and not the `left_ms` it had left."""
+        self.heat_uj += energy_uj(self.power_uw, had_ms)
+        self.heat_peak_uj = max(self.heat_peak_uj, self.heat_uj)
+        self.on_ms -= left_ms - had_ms
+        self.energy_uj -= energy_uj(self.power_uw, left_ms - had_ms)
+
+    def shift(self, time_ms: int) -> None:
+        """Have all that it did happen that much later."""
+        self.since_ms, self.begin_ms = self.since_ms + time_ms, self.begin_ms + time_ms
+        self.end_ms, self.off_ms = self.end_ms + time_ms, self.off_ms + time_ms
+        self.heat_at_ms, self.others_at_ms = self.heat_at_ms + time_ms, self.others_at_ms + time_ms
+
     def rested_ms(self, limits: CoilLimits) -> int:
         """Return until when the coil must rest after its last time on."""
         if self.end_ms - self.since_ms + STEP_MS > limits.on_max_ms:

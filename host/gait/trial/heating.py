@@ -112,11 +112,6 @@ class Heating:
         for coil, more in zip(mine, other, strict=True):
             coil.raise_to(more)
 
-    def copies(self, turns: int, sums: Sums, before: Sums) -> Sums:
-        """Return sums after that many more turns, each of which adds what has come since `before`."""
-        pairs = zip(sums, self.sums(), before, strict=True)
-        return [tuple(have + turns * (now - was) for have, now, was in zip(*rows, strict=True)) for rows in pairs]
-
     def lengthen(self, saved: list[CoilTrial], sums: Sums) -> None:
         """Raise the sums of a save to these."""
         for coil, (on_ms, taken_uj, orders) in zip(saved, sums, strict=True):
@@ -159,12 +154,7 @@ class Heating:
             coil.on_ms += turns * (coil.on_ms - on_ms)
             coil.energy_uj += turns * (coil.energy_uj - taken_uj)
             coil.orders += turns * (coil.orders - orders)
-            coil.end_ms += turns * turn_ms
-            coil.off_ms += turns * turn_ms
-            coil.since_ms += turns * turn_ms
-            coil.begin_ms += turns * turn_ms
-            coil.heat_at_ms += turns * turn_ms
-            coil.others_at_ms += turns * turn_ms
+            coil.shift(turns * turn_ms)
 
     def _fire(self, op: Fire) -> None:
         chosen = [] if op.kept is None else [self._count + op.kept]
@@ -271,10 +261,7 @@ class Heating:
         left_ms = had_ms = coil.off_ms - self._clock.now_ms
         if coil.end_ms > self._clock.now_ms and coil.waits == self._clock.waits:
             had_ms = (coil.begin_ms - self._clock.now_ms) % STEP_MS
-        coil.heat_uj += energy_uj(coil.power_uw, had_ms)
-        coil.heat_peak_uj = max(coil.heat_peak_uj, coil.heat_uj)
-        coil.on_ms -= left_ms - had_ms
-        coil.energy_uj -= energy_uj(coil.power_uw, left_ms - had_ms)
+        coil.cut(left_ms, had_ms)
 
     def _switch_off(self, coil: CoilTrial) -> None:
         """End an order one control step from now, or when a wait has come in between, at its end."""
@@ -282,10 +269,7 @@ class Heating:
         coil.since_ms = self._since_ms(coil)
         if coil.waits == self._clock.waits:
             had_ms = min(left_ms, 2 * STEP_MS)
-        coil.heat_uj += energy_uj(coil.power_uw, had_ms)
-        coil.heat_peak_uj = max(coil.heat_peak_uj, coil.heat_uj)
-        coil.on_ms -= left_ms - had_ms
-        coil.energy_uj -= energy_uj(coil.power_uw, left_ms - had_ms)
+        coil.cut(left_ms, had_ms)
         coil.end_ms = coil.off_ms = self._clock.now_ms
 
     def _settle(self, channel: int) -> None:

@@ -54,9 +54,6 @@ class Part(Protocol):
     def skip(self, turns: int, turn_ms: int, most_ms: int, sums: Any) -> None:
         """Count `turns` more turns that are copies of the last one; the clock goes on afterwards."""
 
-    def copies(self, turns: int, sums: Any, before: Any) -> Any:
-        """Return `sums` after that many more turns, each of which adds what has come since `before`."""
-
     def abort(self) -> None:
         """Take it that the program is aborted now: coils off, joints stand."""
 
@@ -171,9 +168,11 @@ class Trial:
 
     def _lengthen(self, touched: Iterable[Touch], turns: int, before: Sequence[Any]) -> None:
         """Have the ways that leave the last turn of a loop leave the last of its copies too."""
+        after = [part.sums() for part in self._parts]
         for touch in touched:
             for place, part in enumerate(self._parts):
-                touch.sums[place] = part.copies(turns, touch.sums[place], before[place])
+                rows = zip(touch.sums[place], after[place], before[place], strict=True)
+                touch.sums[place] = [_copied(*row, turns) for row in rows]
                 part.lengthen(touch.arrival.parts[place], touch.sums[place])
 
     def _branch(self, op: Wait) -> None:
@@ -221,6 +220,11 @@ class Trial:
             least_ms = self.clock.least_ms
             least_ms -= least_ms % STEP_MS if tail_ms else 0  # an order may end that much sooner than its whole steps
             self._shortest_ms = least_ms if self._shortest_ms is None else min(self._shortest_ms, least_ms)
+
+
+def _copied(sums: Sequence[int], now: Sequence[int], before: Sequence[int], turns: int) -> tuple[int, ...]:
+    """Return sums after that many more turns, each of which adds what has come since `before`."""
+    return tuple(own + turns * (new - old) for own, new, old in zip(sums, now, before, strict=True))
 
 
 def _asks_camera(op: Op) -> bool:

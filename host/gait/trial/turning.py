@@ -80,11 +80,6 @@ class Turning:
         for joint, more in zip(mine, other, strict=True):
             joint.raise_to(more)
 
-    def copies(self, turns: int, sums: Sums, before: Sums) -> Sums:
-        """Return sums after that many more turns, each of which adds what has come since `before`."""
-        pairs = zip(sums, self.sums(), before, strict=True)
-        return [tuple(have + turns * (now - was) for have, now, was in zip(*rows, strict=True)) for rows in pairs]
-
     def lengthen(self, saved: list[JointTrial], sums: Sums) -> None:
         """Raise the sums of a save to these."""
         for joint, (moves, driven_ms) in zip(saved, sums, strict=True):
