@@ -99,7 +99,8 @@ class Commands:
             if not self.upload.go_on():
                 return
             self._armed()
-            self._sees()
+            self._has_senses()
+            self._senses()
         except Refused as refused:
             self._refuse(request, refused)
         else:
@@ -121,20 +122,25 @@ class Commands:
         """Let the running program have what has come of it since; one that nobody may run is aborted."""
         try:
             self.upload.waits = not self.upload.go_on()
-            self._sees()
+            self._has_senses()
         except Refused as refused:
             self._core.end_program(messages.ABORTED, refused.code, refused.value)
         else:
             self._core.player.end = self.upload.checked
 
-    def _sees(self) -> None:
+    def _senses(self) -> None:
         """Raise Refused when a program asks for what this robot does not know now."""
-        core, limbs = self._core, self._core.limbs
-        if self.upload.needs_attitude and not core.attitude.known:
+        if self.upload.needs_attitude and not self._core.attitude.known:
             raise Refused(codes.NO_ATTITUDE)
-        if self.upload.needs_camera and not (limbs and limbs.sees()):
+        if self.upload.needs_camera and not self._core.limbs.sees():
             raise Refused(codes.NO_CAMERA)
-        if self.upload.needs_loop and not limbs.orient:
+
+    def _has_senses(self) -> None:
+        """Raise Refused when a program asks for what this robot can never know or do."""
+        profile, limbs = self._core.profile, self._core.limbs
+        if self.upload.needs_attitude and not profile.imu_address:
+            raise Refused(codes.NO_ATTITUDE)
+        if (self.upload.needs_camera and not (limbs and limbs.camera)) or (self.upload.needs_loop and not limbs.orient):
             raise Refused(codes.NO_CAMERA)
         if (self.upload.needs_load and not (limbs and limbs.load)) or (self.upload.needs_press and not limbs.press):
             raise Refused(codes.NO_LOAD_CELL)

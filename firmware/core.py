@@ -138,6 +138,8 @@ class Core:
         self.state = messages.ARMED
         if event == messages.FINISHED:
             self.reports.step_done()
+        elif self.player.failed:
+            code = self.player.failed
         self.reports.event(event, code, 255, value)
         self.player.leave()
 
@@ -257,10 +259,8 @@ class Core:
 
     def _end_program(self) -> None:
         player = self.player
-        if player.outcome == FINISHED and player.failed:
-            self.end_program(messages.ABORTED, player.failed)
-        elif player.outcome == FINISHED:
-            self.end_program(messages.FINISHED)
+        if player.outcome == FINISHED:
+            self.end_program(messages.ABORTED if player.failed else messages.FINISHED)
         elif player.outcome == TIMED_OUT:
             self._abort(codes.WAIT_TIMEOUT)
         elif player.outcome == STARVED:
@@ -271,7 +271,7 @@ class Core:
     def _abort(self, code: int, value: int = 0) -> None:
         """Everything off; then what the program does when it was aborted, if it says so, else its end."""
         if not self.player.catch(code, self.now_ms):
-            self.end_program(messages.ABORTED, self.player.failed or code, value)
+            self.end_program(messages.ABORTED, code, value)
             return
         self.channels.all_off(self.now_ms)
         if self.limbs:

@@ -87,6 +87,7 @@ class Player:
         self.step = 0
         self.news = self.news or self.paused
         self.paused = False
+        self.code = b""  # else there would be no room for the next one
 
     def shift(self, count: int) -> None:
         """Follow the code of a stream, whose first bytes were dropped."""
@@ -122,6 +123,9 @@ class Player:
             return False
         self.failed = code
         self.outcome = RUNNING
+        if self.paused:  # its way begins when the pause ends
+            self._began_ms += now_ms - self._paused_ms
+            self._paused_ms = now_ms
         self._go_to(program.ON_FAULT, now_ms)
         return True
 
@@ -385,7 +389,7 @@ class Player:
 
     def _holds_for_robot(self, source: int, mask: int, value: int, above: bool) -> bool:
         if source == program.TIME:
-            passed_ms = self._now_ms - self._began_ms
+            passed_ms = (self._paused_ms if self.paused else self._now_ms) - self._began_ms
             return passed_ms > mask if above else passed_ms < mask
         if source in program.OF_ATTITUDE and not self._attitude.known:
             self._blind = True

@@ -32,9 +32,12 @@ class Reports:
     def event(self, event: int, code: int = 0, channel: int = 255, value: int = 0, step: int = -1) -> None:
         """Tell the host what happened, unless it has stopped listening; what has a code is kept as well."""
         core = self._core
+        if self._player.notes:
+            self._notes()
         if event in STOPS_STEPS:
             self._step = 0
-        if code and event != messages.CAUGHT:  # the end that follows has the same one
+            self._paused = False
+        if code and not (event == messages.ABORTED and self._player.failed):  # it was kept when it was caught
             core.records.note(self._now(), code, channel, value, core.was)
         if core.link.room() > ROOM:
             payload = messages.EVENT.pack(
@@ -89,13 +92,18 @@ class Reports:
     def _news(self) -> None:
         player = self._player
         player.news = False
-        for place in range(player.notes):
-            self.event(messages.NOTED, step=player.noted[place])
-        player.notes = 0
+        if player.notes:
+            self._notes()
         if player.paused or self._paused:  # both: it went through a step that takes no time
             self._paused = player.paused
             if self._core.state == messages.RUNNING:
                 self.event(messages.PAUSED if player.paused else messages.RESUMED)
+
+    def _notes(self) -> None:
+        """Tell the notes that were passed: before what came after them."""
+        count, self._player.notes = self._player.notes, 0
+        for place in range(count):
+            self.event(messages.NOTED, step=self._player.noted[place])
 
     def _cut_offs(self, core) -> None:
         for channel in range(core.channels.count):

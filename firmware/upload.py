@@ -82,7 +82,7 @@ class Upload:
 
     def verify(self, request: int) -> None:
         """Begin the verification that a start asked for."""
-        if self._header is None or (self.streamed and self._check.end == 0):
+        if self._header is None or (self.streamed and (self._gone or self._check.end == 0)):
             raise Refused(codes.NO_PROGRAM)
         if not self.streamed:
             if crc32(self.code) != self._header.crc:

@@ -97,7 +97,7 @@ class Check:
             self._depth += 1
             self._timed &= ~(1 << self._depth)
         elif op == program.NEXT:
-            if self._depth and not self._timed >> self._depth & 1:
+            if self._depth > 0 and not self._timed >> self._depth & 1:
                 raise program.BadProgram("a loop that takes no time", at)
             self._depth -= 1
         elif op == program.WAIT or (op == program.DELAY and program.number(self._code, at + 1, 4)):
@@ -186,6 +186,8 @@ def _check_arguments(code: bytes, at: int) -> None:
     duty_permille = program.number(code, at + duty_at, 2) if duty_at else 0
     if duty_permille > 1000:
         raise program.BadProgram(f"duty {duty_permille} permille, at most 1000", at)
+    if duty_at and program.number(code, at + duty_at + 4, 2) == program.KEEP:
+        raise program.BadProgram("a coil that is to be kept at no temperature", at)
     if op == program.REPEAT and program.number(code, at + 1, 2) == 0:
         raise program.BadProgram("a loop of no turns", at)
     if op == program.PRESS and program.number(code, at + 3, 2) > program.number(code, at + 5, 4):

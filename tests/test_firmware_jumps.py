@@ -76,6 +76,15 @@ def test_an_abort_of_what_runs_after_an_abort_ends_the_program(rig):
     assert rig.board.chip.duty_permille[0] == 0
 
 
+def test_a_program_that_was_aborted_and_then_cancelled_ends_by_what_aborted_it_and_that_is_kept_once(rig):
+    run_program(rig, ABORTS + CATCH + program.delay(5000) + program.halt())
+    rig.run(200)
+    rig.say(messages.CANCEL)
+
+    assert rig.events("aborted")[0].code == codes.WAIT_TIMEOUT
+    assert rig.core.records.faults.count() == 1
+
+
 def test_a_guard_that_trips_is_not_caught(rig):
     guard = program.guard(Condition(program.TIME, program.ANY, program.ABOVE, 0, 50))
     code = guard + program.delay(500) + CATCH + program.delay(5)
@@ -101,6 +110,15 @@ def test_every_note_that_is_passed_is_told_in_its_order(rig):
     rig.run(200)
 
     assert [event.step for event in rig.events("noted")] == list(range(1, 30))
+
+
+@pytest.mark.parametrize("end", [b"", program.wait(NEVER, 0, program.ABORT)])
+def test_a_note_is_told_before_the_end_that_follows_it(rig, end):
+    run_program(rig, program.note(7) + end + program.halt())
+    rig.run(200)
+
+    last = [messages.EVENTS[body.event] for name, body in rig.got if name == "event"][-2:]
+    assert last == ["noted", "aborted" if end else "finished"]
 
 
 def test_a_coil_that_is_kept_at_a_temperature_stays_there_until_its_time_is_over(rig):

@@ -152,3 +152,41 @@ def test_every_pause_is_told_also_after_a_step_that_takes_no_time(rig):
 
     assert begun(rig) == [9]
     assert len(rig.events("paused")) == 2
+
+
+def test_a_time_that_is_guarded_stands_still_in_a_pause(rig):
+    guard = program.guard(Condition(program.TIME, program.ANY, program.ABOVE, 0, 200))
+    run_program(rig, guard + program.delay(150) + program.halt())
+    say(rig, messages.PAUSE_NOW)
+    rig.run(1000)
+    assert rig.core.state == messages.RUNNING
+    say(rig, messages.RESUME)
+    rig.run(200)
+
+    assert rig.events("finished")
+
+
+def test_what_runs_after_an_abort_in_a_pause_begins_as_soon_as_that_ends(rig):
+    caught = program.halt() + program.label(program.ON_FAULT) + program.step(5) + program.delay(100) + program.halt()
+    run_program(rig, program.delay(5000) + caught)
+    say(rig, messages.PAUSE_NOW)
+    rig.run(500)
+    rig.core._abort(codes.CAMERA)
+    rig.run(500)
+    assert begun(rig) == []
+    say(rig, messages.RESUME)
+    rig.run(150)
+
+    assert rig.events("step")[0].now_ms == rig.events("resumed")[0].now_ms
+    assert rig.events("aborted")[0].code == codes.CAMERA
+
+
+def test_a_program_that_begins_in_the_step_that_cancels_a_paused_one_goes_on_after_no_pause(rig):
+    run_program(rig, program.delay(50) + program.note(1) + program.delay(50) + program.halt())
+    say(rig, messages.PAUSE_NOW)
+    for message, fields in ((messages.CANCEL, {}), (messages.START, {"paused": 0, "at_ms": 0})):
+        rig.host.send(message.number, message.pack(**fields), rig.now_ms)
+    rig.run(300)
+
+    assert rig.events("finished")
+    assert rig.events("resumed") == []

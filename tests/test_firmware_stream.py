@@ -4,7 +4,7 @@ import pytest
 
 from protocol import codes, messages, program
 from protocol.program import Condition
-from tests.firmware_bench import Rig, refusal, run_program
+from tests.firmware_bench import FINGERS, Rig, refusal, run_program
 
 NEVER = Condition(program.CURRENT, program.ANY, program.ABOVE, 0x7FFF, 0)
 LONGER_THAN_THE_ROBOT_HOLDS = 6000
@@ -155,3 +155,50 @@ def test_a_stream_of_nothing_does_not_begin(rig):
     stream = Stream(rig)
 
     assert refusal(stream.start()).code == codes.NO_PROGRAM
+
+
+def test_a_stream_whose_beginning_is_gone_does_not_begin_again(rig):
+    stream = Stream(rig)
+    stream.send(program.delay(100))
+    stream.start()
+    for _ in range(rig.profile.program_bytes_max // len(program.delay(1) * 40) + 1):
+        stream.send(program.delay(1) * 40)
+        rig.run(25)
+    stream.send(program.halt())
+    rig.run(300)
+
+    assert rig.events("finished")
+    assert refusal(rig.say(messages.START, paused=0, at_ms=0)).code == codes.NO_PROGRAM
+
+
+def test_a_stream_that_nobody_may_run_is_refused_however_often_it_is_started(rig):
+    stream = Stream(rig)
+    stream.send(program.next_())
+    rig.arm()
+    refused = [refusal(rig.say(messages.START, paused=0, at_ms=0)) for _ in range(3)]
+
+    assert [(each.code, each.value) for each in refused] == [(codes.BAD_CODE, 0)] * 3
+
+
+def test_a_stream_that_lost_the_object_still_does_what_it_says_about_it():
+    rig = Rig(FINGERS)
+    stream = Stream(rig, program.CATCHES)
+    rig.board.watcher.seen = True
+    rig.run(100)
+    stream.send(program.wait(Condition(program.ORIENTATION, 0, program.ABOVE, 9000, 0), 5000, program.ABORT))
+    stream.start()
+    rig.board.watcher.absent = True
+    rig.run(300)
+    assert rig.events("caught")[0].code == codes.CAMERA
+    stream.send(program.halt() + program.label(program.ON_FAULT) + program.step(2) + program.delay(10) + b"\0")
+    rig.run(50)
+
+    assert [event.step for event in rig.events("step")] == [2]
+    assert rig.events("aborted")[0].code == codes.CAMERA
+
+
+def test_a_program_that_has_ended_takes_no_room_from_the_next(rig):
+    run_program(rig, program.delay(50) + program.halt())
+    rig.say(messages.CANCEL)
+
+    assert len(rig.core.player.code) == 0

@@ -151,6 +151,7 @@ BAD = {
     "open loop": (program.repeat(2) + program.halt(), "closed loops"),
     "next without repeat": (program.next_() + program.halt(), "nested -1"),
     "nine loops deep": (program.repeat(1) * 9 + program.next_() * 9 + program.halt(), "nested 9"),
+    "kept at nothing": (program.fire(1, 500, 100, program.KEEP) + program.halt(), "kept at no temperature"),
     "no turns": (program.repeat(0) + program.next_() + program.halt(), "no turns"),
     "no coil": (program.fire(0, 1, 1) + program.halt(), "channels 0x0"),
     "unknown coil": (program.fire(1 << 8, 1, 1) + program.halt(), "channels 0x100"),
