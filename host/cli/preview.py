@@ -12,7 +12,7 @@ from host.cli.output import emit, note, writing
 from host.cli.scripts import place
 from host.errors import BadRequest
 from host.gait.compiler import compile_script
-from host.gait.forecast import Forecast, Model, follow, model_of
+from host.gait.forecast import Forecast, Model, draw, model_of
 from host.gait.script import load
 from host.preview.compare import changes
 from host.preview.drawing import THEMES
@@ -20,9 +20,6 @@ from host.preview.fields import fields
 from host.preview.picture import difference, picture
 from host.preview.terminal import print_changes, print_timeline
 from host.profile import Profile
-
-TOLD = 900  # points of a curve
-LEAST_MS = 10
 
 
 @click.command("preview")
@@ -65,7 +62,5 @@ def command(
 
 
 def foretold(script: str, model: Model, profile: Profile, params: tuple[str, ...]) -> Forecast:
-    """Return the forecast of a script, its curves told in as many points as can be seen."""
-    compiled = compile_script(load(script), profile, params)
-    told_ms = max(course.told_ms for course in follow(compiled, model).ways.values())
-    return follow(compiled, model, max(LEAST_MS, told_ms // TOLD))
+    """Return the forecast of a script, with its curves."""
+    return draw(compile_script(load(script), profile, params), model)

@@ -33,7 +33,7 @@ from typing import NamedTuple, Self
 from host.gait import tree as trees
 from host.gait.checker import check
 from host.gait.compiler import Compiled, compile_script
-from host.gait.forecast import follow, model_of
+from host.gait.forecast import draw, model_of
 from host.gait.forms import phrases
 from host.gait.forms.formatting import replace_file
 from host.gait.forms.gathering import NAME, Gathering, plain
@@ -47,17 +47,13 @@ from host.preview.picture import picture
 from host.profile import Profile
 from host.robot import Robot
 
-POINTS = 900  # of a curve
-LEAST_MS = 10  # from one to the next
-
 
 class _Checked(NamedTuple):
-    """What was checked, for which robot, and how long it takes at most."""
+    """What was checked, and for which robot."""
 
     sheet: Sheet
     compiled: Compiled
     address: str
-    longest_ms: int
 
 
 class Gait(Gathering):
@@ -286,7 +282,7 @@ class Gait(Gathering):
         compiled = self.compile(profile, params, path)
         report = check(compiled)
         address = f"sim:{profile.robot}" if isinstance(robot, Profile) else robot
-        self._checked = _Checked(self.sheet(), compiled, address, report.longest_ms)
+        self._checked = _Checked(self.sheet(), compiled, address)
         return report
 
     def save(self, path: str | Path) -> Path:
@@ -300,8 +296,7 @@ class Gait(Gathering):
         checked = self._checked
         if checked is None or self.is_open or checked.sheet != self.sheet():
             return None
-        model = model_of(checked.address, checked.compiled.profile)
-        return picture(follow(checked.compiled, model, max(LEAST_MS, checked.longest_ms // POINTS)))
+        return picture(draw(checked.compiled, model_of(checked.address, checked.compiled.profile)))
 
 
 def _some(coils: tuple[str, ...]) -> tuple[trees.Coil, ...]:

@@ -23,6 +23,8 @@ from host.predictors import Coils, Unpredicted, predictor
 from host.profile import Profile
 
 Model = Coils | str  # or why there is none
+POINTS = 900  # of a curve: as many as can be seen
+LEAST_MS = 10  # from one to the next
 WAYS = {"early": "if every other wait is over at once", "late": "if every other wait runs out"}
 
 
@@ -139,6 +141,12 @@ def model_of(address: str, profile: Profile) -> Model:
         return predictor(address, profile)
     except Unpredicted as reason:
         return str(reason)
+
+
+def draw(compiled: Compiled, model: Model) -> Forecast:
+    """Return the forecast by a model, with as much of the curves as a picture shows."""
+    told_ms = max(course.told_ms for course in follow(compiled, model).ways.values())
+    return follow(compiled, model, max(LEAST_MS, told_ms // POINTS))
 
 
 def follow(compiled: Compiled, model: Model, every_ms: int = 0) -> Forecast:
