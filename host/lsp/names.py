@@ -19,7 +19,6 @@ from host.gait.script import Script
 from host.gait.tree import File, Name, Place, Reference, Statement
 from host.lsp.places import within
 
-REFERENCES = ("param", "circle", "let", "argument", "item")
 Env = Mapping[str, "Symbol"]
 
 

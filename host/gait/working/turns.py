@@ -21,7 +21,6 @@ from protocol.labels import direction
 
 Direction = tuple[int, ...]
 
-QUARTER_CENTIDEG = 9000
 ROUND_CENTIDEG = 36000
 # A quarter turn by the left hand about each axis: it takes a place to where what comes there was before.
 BACK: dict[str, Callable[[int, int, int], Direction]] = {
