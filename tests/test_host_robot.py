@@ -194,7 +194,7 @@ def test_an_unknown_coil_is_refused_before_anything_is_sent(peer, line):
     robot = Robot(line)
     robot.connect()
 
-    with pytest.raises(BadRequest, match="no coil Z on circular: it has A B C D E F G H, groups all"):
+    with pytest.raises(BadRequest, match="no coil Z on circular: it has A B C D E F G H, groups all bottom front"):
         robot.fire(["A", "Z"], 600, 100)
 
     assert "fire" not in names(peer)
@@ -254,7 +254,7 @@ def test_a_coil_that_cannot_be_printed_is_refused_in_one_line(line, name):
     with pytest.raises(BadRequest) as caught:
         robot.fire([name], 600, 100)
 
-    assert str(caught.value) == f"no coil {name!r} on circular: it has A B C D E F G H, groups all"
+    assert str(caught.value) == f"no coil {name!r} on circular: it has A B C D E F G H, groups all bottom front"
 
 
 def test_every_byte_is_kept_with_both_clocks(line):
