@@ -37,6 +37,7 @@ LINEAR = re.findall(r"^\| `(set=\S+)` \| ([\d.]+) N \| ([\d.]+) N \| ([\d.]+) % 
 FIVE = next(re.finditer(r"`(sim:press\?set=material.youngs_modulus_kpa:40&\S+)`", PAGE))[1]
 STEP_S = 0.01
 HELD = "force at the end of the hold"
+PHASE = 0.005  # a push of 2 s begins at any time between two steps of the block's solver, 10 ms apart
 COARSE = "set=block.columns_count:16&set=block.rows_count:8"
 
 
@@ -162,7 +163,7 @@ def test_the_material_that_is_found_is_that_of_the_page(played, capsys):
     )
     for (name, *told), key in zip(rows, ("youngs_modulus_kpa", "viscosity_kpa_s", "damping_kpa_s"), strict=True):
         planted, value, low, high = map(float, told)
-        assert found[key]["value"] == pytest.approx(value, abs=found[key]["error"]), name
+        assert found[key]["value"] == pytest.approx(value, abs=2 * found[key]["error"]), name  # another draw
         assert (found[key]["low"], found[key]["high"]) == pytest.approx((low, high), abs=2 * found[key]["error"]), name
         assert low <= planted <= high
 
@@ -181,7 +182,7 @@ def test_the_tables_are_those_of_the_model_and_of_runs(head, address, indenter):
 
     assert len(rows) >= 4
     for name, (first, second) in rows.items():
-        coarse = 0.015 * second if name == HELD else 0.012  # scenes are 50 ms apart
+        coarse = 0.015 * second if name == HELD else 0.012 + PHASE * second  # scenes are 50 ms apart
         assert first == pytest.approx(alone[name], abs=0.0051), name
         assert second == pytest.approx(bench[name], abs=coarse), name
 
@@ -212,7 +213,9 @@ def test_force_and_residual_of_a_material_are_those_of_a_run(row):
 
     record = told(recorded(f"sim:press?indenter=flat&{setting}", "depth=2mm"))
 
-    assert record["greatest force, at the end of the push"] == pytest.approx(float(greatest), abs=0.012)
+    assert record["greatest force, at the end of the push"] == pytest.approx(
+        float(greatest), abs=0.012 + PHASE * float(greatest)
+    )
     assert record[HELD] == pytest.approx(float(held), rel=0.015)
     assert 100 * record["dent that stays"] / 2.0 == pytest.approx(float(residual), abs=0.06)
 
@@ -260,7 +263,9 @@ def test_the_stress_that_stays_is_that_of_runs(name, address):
     record = recorded(address)
 
     stays = [left_kpa(record, seconds) for seconds in (0.2, 1, 5)]
-    assert [float(each) for each in row.groups()] == pytest.approx(stays, abs=0.02)
+    assert [float(each) for each in row.groups()] == pytest.approx(
+        stays, abs=0.03
+    )  # 0.2 s after it let go it falls by 0.01 kPa in 5 ms
 
 
 def test_the_greatest_strains_are_those_of_runs():

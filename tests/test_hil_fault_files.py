@@ -13,7 +13,7 @@ def test_orders_come_through_a_line_that_spoils_a_byte_in_two_hundred(faulty):
     rig = faulty(("line-flip:5", 0, 60_000))
     for coil in "ABCD":
         rig.fire(coil, duty_percent=30, hold_s=0.3)
-        rig.run(seconds=0.5)
+        rig.run(seconds=2)
 
     assert all(len(rig.bench.coil(coil).history) >= 2 for coil in "ABCD")
     assert rig.robot.statistics()["frames_damaged"] > 0

@@ -15,12 +15,12 @@ SOFTRIG = [sys.executable, "-c", "from host.cli import main; main()"]
 PATIENCE_S = 100
 TWO_STEPS = """gait 1
 robot circular
-def hold(c):
+def held(c):
     fire $c at 100 % for 700 ms
     fire $c at 32 % for 1300 ms
-hold(A)
-hold(B)
-hold(C)
+held(A)
+held(B)
+held(C)
 """
 HOST_THAT_FIRES = """
 import sys

@@ -35,8 +35,8 @@ VECTORS = [
     ),
     (
         "start", 1, 0x22, 4, 7,
-        {"at_ms": 0xFFFFFFFF},
-        "0d21220407fffffffff948dd0700",
+        {"at_ms": 42, "paused": 0},
+        "06212204072a010101053a47c8a400",
     ),
     (
         "ok", 1, 0x40, 2, 4,

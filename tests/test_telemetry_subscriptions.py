@@ -167,7 +167,7 @@ def test_a_slot_that_fills_the_line_leaves_the_others_their_turn(slots):
     [
         ({"slot": 4}, codes.SLOT_LIMIT, 4, 3),
         ({"period_ms": 4}, codes.PERIOD_LIMIT, 4, 5),
-        ({"variables": bytes([0, 32])}, codes.UNKNOWN_VARIABLE, 32, 31),
+        ({"variables": bytes([0, 33])}, codes.UNKNOWN_VARIABLE, 33, 32),
         ({"variables": bytes([18]) * 8}, codes.RECORD_LIMIT, 256, 229),
         ({"variables": bytes([26, 28])}, codes.RECORD_LIMIT, 0, 1),  # of joints: it has none
     ],

@@ -161,5 +161,6 @@ def test_every_robot_starts_with_memory_to_spare(name):
     scant = partial(micropython.execute, heap_bytes=micropython.HEAP_BYTES - 48 * 1024)
     bench = Bench(parts_of(robot), plant_of(robot, 1), Image.installed(robot.profile.read_bytes()), scant)
     bench.clock.run_until(BOOTED_US)
+    SimLink(bench).close()
 
     assert bench.crashes == []
