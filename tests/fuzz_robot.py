@@ -156,7 +156,10 @@ def played(data: bytes, kind: Kind) -> Robot:
         elif what == 6:
             line = script.sealed(messages.ARM.number, _arm(script), seq, 0, frames.RELIABLE)
             seq += 1
-        elif what < 12:
+        elif what == 11:
+            line = script.sealed(messages.CODE.number, _piece(script, robot.core), seq & 255, 0, frames.RELIABLE)
+            seq += 1
+        elif what < 11:
             kind = script.byte()
             line = script.sealed(kind, script.some(), seq & 255, script.byte(), frames.RELIABLE)
             seq += 1
@@ -179,18 +182,27 @@ def _alive(script: Script, core: Core) -> bytes:
 
 
 def _program(script: Script, robot_crc: int, seq: int, flags: int) -> tuple[bytes, int]:
-    """Return a program as the script's bytes say, uploaded and started."""
+    """Return a program as the script's bytes say, uploaded or, of flag 4, streamed; and started, of flag 8 paused."""
     code = script.some()
+    streamed = program.STREAMED | program.CATCHES if flags & 4 else 0
+    started = {"paused": flags >> 3, "at_ms": messages.AT_SYNC if flags & 2 else 0}
     rows = (
-        (messages.PROGRAM.number, program.header(code, robot_crc, flags & 1)),
+        (messages.PROGRAM.number, program.header(code, robot_crc, flags & 1 | streamed)),
         (messages.CODE.number, messages.CODE.pack(offset=0, code=code)),
-        (messages.START.number, messages.START.pack(paused=0, at_ms=messages.AT_SYNC if flags & 2 else 0)),
+        (messages.START.number, messages.START.pack(**started)),
     )
     line = b""
     for kind, payload in rows:
         line += script.sealed(kind, payload[: frames.PAYLOAD_MAX], seq & 255, 0, frames.RELIABLE)
         seq += 1
     return line, seq
+
+
+def _piece(script: Script, core: Core) -> bytes:
+    """Return what comes next of a streamed program, as the script's bytes say."""
+    upload = core.commands.upload
+    at = upload._gone + upload._check.end if upload.streamed and upload._check else 0
+    return messages.CODE.pack(offset=at & 0xFFFF, code=script.some())[: frames.PAYLOAD_MAX]
 
 
 def _break(board: Table, profile: Profile, what: int) -> None:

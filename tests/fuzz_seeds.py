@@ -129,6 +129,16 @@ def core() -> Iterator[tuple[str, bytes]]:
     yield "played", armed + b"\x04" + sized(CODE) + WAIT * 3
     yield "at sync", armed + b"\x24" + sized(CODE) + WAIT + b"\x02" + head(messages.SYNC.number, b"", 0) + WAIT * 2
     yield "e-stop", armed + fire + BREAK + WAIT
+    never = program.Condition(program.CURRENT, program.ANY, program.ABOVE, 0x7FFF, 0)
+    begins = program.step(1) + program.fire(1, 500, 100) + program.wait(never, 100, program.ABORT)
+    ends = program.halt() + program.label(program.ON_FAULT) + program.note(2) + program.delay(50) + program.halt()
+    resume, one_step = (
+        told(messages.PAUSE, messages.PAUSE.pack(how=how), 0x07) for how in (messages.RESUME, messages.ONE_STEP)
+    )
+    yield "streamed", armed + b"\x44" + sized(begins) + WAIT + b"\x0b" + sized(ends) + WAIT * 3
+    yield "starved", armed + b"\x44" + sized(program.fire(1, 500, 500) + program.delay(20)) + WAIT * 2
+    yield "stepped", armed + b"\x84" + sized(begins + ends) + one_step + WAIT + resume + WAIT * 4
+    yield "stepped in a stream", armed + b"\xc4" + sized(begins) + one_step + b"\x0b" + sized(ends) + WAIT * 4
     yield "taken over", armed + fire + b"\x11" + WAIT + fire + WAIT
     yield "keyed", b"\x01" + HELLO + WAIT + ARM + fire + WAIT
 
