@@ -8,7 +8,7 @@ from host.gait import tree
 from host.gait.diagnostics import GaitError
 from host.gait.reading.parser import parse_file, parse_value
 from host.gait.units import decimal
-from tests.gait_scripts import compiled
+from tests.gait_scripts import compiled, diagnostics, mistakes
 
 
 def statements(text):
@@ -136,3 +136,17 @@ def test_ten_doublings_of_a_def_are_read_but_sixty_are_refused():
     assert len(compiled(doublings(6)).plan) == 64
     with pytest.raises(GaitError, match="E114"):
         compiled(doublings(60))
+
+
+def test_a_text_of_twenty_thousand_lines_may_end_its_last_line():
+    _, found = parse_file("\n" * 20_000, "x.gait")
+
+    assert found == []
+
+
+def test_calls_and_includes_that_are_nested_too_deeply_are_said_where_they_are():
+    calls = "".join(f"def f{i}():\n    f{i + 1}()\n" for i in range(2000)) + "def f2000():\n    wait 1 s\nf0()"
+    files = {f"f{i}.gait": f'gait 1\ninclude "f{i + 1}.gait"\n' for i in range(2000)}
+
+    assert mistakes(calls) == [("E114", 200, 5)]
+    assert [item.code for item in diagnostics('include "f0.gait"', files=files)] == ["E114"]

@@ -19,6 +19,7 @@ from host.gait.reading.parser import parse_file
 from host.gait.tree import Broken, File, Include, Place, Robot, Statement
 
 BYTES_MAX = LINES_MAX * LINE_MAX
+INCLUDES_MAX = 50  # that stand in each other
 
 Read = Callable[[str], str]
 
@@ -108,6 +109,9 @@ class _Loader:
             return None
         if path in self.files:
             return self.files[path]
+        if len(self.open) > INCLUDES_MAX:
+            self._complain(included, "E114", f"more than {INCLUDES_MAX} files that include one another", path)
+            return None
         try:
             text = self.read(path)
         except (OSError, ValueError) as error:

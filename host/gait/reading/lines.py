@@ -39,8 +39,9 @@ def next_indent(lines: list[str], at: int) -> int:
 
 def unreadable(lines: list[str], name: str) -> list[Diagnostic]:
     """Return what keeps a text from being read at all: its size, tabs, control characters."""
-    if len(lines) > LINES_MAX:
-        return [Diagnostic(Place(name, LINES_MAX + 1, 1, 2), "E114", f"{len(lines)} lines, at most {LINES_MAX}")]
+    count = len(lines) - (lines[-1:] == [""])  # the last line has an end as well
+    if count > LINES_MAX:
+        return [Diagnostic(Place(name, LINES_MAX + 1, 1, 2), "E114", f"{count} lines, at most {LINES_MAX}")]
     found = []
     for number, line in enumerate(lines, 1):
         lead = len(line) - len(line.lstrip())

@@ -25,6 +25,7 @@ from host.gait.working.timeline import TooLarge, duration_ms, together
 from host.profile import Profile
 
 STATEMENTS_MAX = 50_000
+DEPTH_MAX = 100  # of blocks and calls in each other
 COUNT_MAX = 0xFFFF
 SINGLE: dict[type[Statement], Callable[[Any, Scope, int], list[Op]]] = {
     tree.Fire: orders.fire,
@@ -36,6 +37,10 @@ SINGLE: dict[type[Statement], Callable[[Any, Scope, int], list[Op]]] = {
     tree.WaitUntil: orders.wait_until,
     tree.Let: aims.let,
 }
+
+
+class TooDeep(Exception):
+    """Calls and blocks that stand in too many others, which was reported."""
 
 
 @dataclass(frozen=True)
@@ -72,6 +77,8 @@ def expand(script: Script, profile: Profile, overrides: Sequence[str], problems:
     try:
         plan = worker.block(script.main.statements, Where(scope))
         worker.try_uncalled(scope)
+    except TooDeep:
+        pass
     except TooLarge:
         problems.add(Place(script.main.name, 1, 1, 2), "E114", "the script unrolls to more than any robot holds")
     return Expansion(tuple(plan), tuple(worker.steps), scope.params, tuple(scope.unsound))
@@ -85,6 +92,7 @@ class _Expander:
     steps: list[Step] = field(default_factory=list)
     called: set[str] = field(default_factory=set)
     left: int = STATEMENTS_MAX
+    depth: int = 0
     files: dict[str, tree.File] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -92,7 +100,13 @@ class _Expander:
 
     def block(self, statements: Sequence[Statement], where: Where) -> list[Op]:
         """Return the ops of statements that run one after another."""
-        return [op for statement in statements for op in self.statement(statement, where)]
+        if self.depth == DEPTH_MAX:
+            self.problems.add(statements[0].place, "E114", "calls and blocks are nested too deeply")
+            raise TooDeep
+        self.depth += 1
+        ops = [op for statement in statements for op in self.statement(statement, where)]
+        self.depth -= 1
+        return ops
 
     def statement(self, node: Statement, where: Where) -> list[Op]:
         """Return the ops of one statement."""
