@@ -109,6 +109,16 @@ def test_what_changed_is_told_for_each_coil_and_step(forecast):
     assert [line for line, _ in found.added] == [line for line, _ in found.removed] == [4, 7]
 
 
+def test_lines_are_those_of_the_script_also_where_it_calls_into_an_included_file():
+    crawl = of_gait("circular-crawl")
+
+    printed = on_terminal(lambda console: print_timeline(crawl, console)).splitlines()
+
+    numbers = [number for line in printed if line.startswith("line ") for number in line.split()[1:]]
+    assert set(numbers) == {"15", "19"}  # its two calls of push
+    assert all(line.endswith("line 19") for line in printed if line.startswith(tuple("ABCDEFGH")))
+
+
 def test_a_picture_of_a_change_lists_the_steps_of_both(forecast):
     svg = difference(forecast, foretold(SCRIPT.replace("for 2 s", "for 3 s")))
 

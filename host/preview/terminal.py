@@ -83,7 +83,7 @@ class Timeline:
         if self._forecast.why_not:
             return row.append(f"  on {track.on_ms / 1000:.2f} s")
         step = self._forecast.compiled.step(track.peak_step)
-        line = f" {step.where}" if step else ""
+        line = f" line {step.outer.line}" if step else ""
         hot = track.peak_degc >= self._forecast.compiled.profile.coil.trip_degc
         return row.append(f" {track.peak_degc:4.0f} C {track.peak_ms / 1000:6.1f} s{line}", "bold red" if hot else "")
 
