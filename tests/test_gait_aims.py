@@ -218,3 +218,17 @@ def test_two_coils_that_are_chosen_may_be_on_together_the_same_one_only_in_turn(
 
 def test_the_circle_of_the_tests_is_the_rolling_circle():
     assert CIRCLE.split()[3:] == BALL
+
+
+def test_what_a_chosen_coil_takes_on_one_of_two_ways_is_counted_where_they_meet():
+    body = f"{CIRCLE}let x = roll[down]\nwait until time > 1 s timeout 100 ms else end\nfire $x at 50 % for 1 s\n"
+    made = report(body + "wait 1 s\nlabel end\nwait 3 s", profile=ball_robot())
+
+    assert [coil.on_ms for coil in made.coils] == [1000] * 8
+    assert all(coil.energy_mj >= 190 for coil in made.coils)
+
+
+def test_the_shortest_time_does_not_wait_for_an_order_that_a_chosen_coil_may_take_over():
+    body = f"{CIRCLE}let x = roll[down]\nfire A00m1 at 10 % for 1 s overlap 1 s\nfire $x at 10 % for 20 ms"
+
+    assert report(body, profile=ball_robot()).shortest_ms == 20

@@ -246,3 +246,17 @@ def test_overrides_are_checked_as_they_would_run():
     made = check(compiled("param duty = 50 %\nfire A at $duty for 1 s", "duty=95%", profile=round_robot()))
 
     assert [(item.code, item.place.line) for item in made.diagnostics] == [("E301", 4)]
+
+
+def test_a_coil_that_stays_on_while_its_heat_is_waited_for_heats_all_that_time():
+    made = report(
+        "fire A at 90 % for 1 s\nhold A at 90 C with 50 % for 2 s overlap 2 s\n"
+        "wait until A.heat < 20 mJ timeout 2 s else abort"
+    )
+
+    assert made.coils[0].heat_peak_mj > 400
+
+
+def test_the_shortest_time_does_not_wait_for_an_order_that_its_cut_off_may_end():
+    assert report("fire A at 50 % for 1 s overlap 1 s until 80 C\nwait 100 ms").shortest_ms == 100
+    assert report("hold A at 80 C with 50 % for 1 s overlap 1 s\nwait 100 ms").shortest_ms == 1000

@@ -40,6 +40,7 @@ class CoilTrial:
         self.orders, self.heat_peak_uj = max(self.orders, other.orders), max(self.heat_peak_uj, other.heat_peak_uj)
         self.longest_ms = max(self.longest_ms, other.longest_ms)
         self.heat_uj, self.others_uj = max(self.heat_uj, other.heat_uj), max(self.others_uj, other.others_uj)
+        self.order = self.order or other.order
 
     def cut(self, left_ms: int, had_ms: int) -> None:
         """Take it that its order, counted to its end already, has `had_ms` more and not the `left_ms` it had left."""

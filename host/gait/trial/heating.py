@@ -77,6 +77,17 @@ class Heating:
             (coil.off_ms - self._clock.now_ms for coil in self._all if coil.off_ms > self._clock.now_ms), default=0
         )
 
+    def least_tail_ms(self) -> int:
+        """Return how long that takes at least: some end at their cut-off, or when another order takes their place."""
+        sure = [
+            coil.off_ms
+            for channel, coil in enumerate(self._all)
+            if coil.order
+            and (coil.order.holds or not coil.order.cutoff_decidegc)
+            and len(list(self._kin(channel))) == 1
+        ]
+        return max(0, max(sure, default=0) - self._clock.now_ms)
+
     def finish(self) -> None:
         """Let every coil end."""
         for channel in range(len(self._all)):
@@ -243,7 +254,17 @@ class Heating:
             coil = self._all[channel]
             self._settle(channel)
             coil.settle_others(self._clock.now_ms, self._limits)
+            self._stay(channel, op.timeout_ms + STEP_MS)
             coil.heat_uj = min(coil.heat_uj, max(asked.value, 0) * 1000)
+
+    def _stay(self, channel: int, time_ms: int) -> None:
+        """Count what a coil comes to that stays on during a wait of that time, at most."""
+        coil = self._all[channel]
+        on_ms = min(coil.off_ms - self._clock.now_ms, time_ms)
+        if on_ms > 0:
+            coil.heat_uj = max(coil.heat_uj, heat_uj(coil.heat_uj, coil.power_uw, on_ms, self._limits))
+            coil.heat_peak_uj = max(coil.heat_peak_uj, coil.heat_uj)
+            self._check_heat(channel)
 
     def _share(self) -> None:
         """Add what chosen coils came to to each coil that they may be."""

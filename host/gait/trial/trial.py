@@ -75,6 +75,9 @@ class Part(Protocol):
     def tail_ms(self) -> int:
         """Return how long it takes until every order has ended."""
 
+    def least_tail_ms(self) -> int:
+        """Return how long that takes if whatever may end early does."""
+
     def finish(self) -> None:
         """Take it that nothing more comes."""
 
@@ -211,14 +214,17 @@ class Trial:
     def _end(self, label: int) -> None:
         """Let every order of a way end; what runs after an abort does not count as a way of the script."""
         tail_ms = max(part.tail_ms() for part in self._parts)
+        least_tail_ms = max(part.least_tail_ms() for part in self._parts)
         self.tail_ms = max(self.tail_ms, tail_ms)
         self.clock.now_ms += tail_ms
         for part in self._parts:
             part.finish()
             part.keep()
         if label != program.ON_FAULT:
-            least_ms = self.clock.least_ms
-            least_ms -= least_ms % STEP_MS if tail_ms else 0  # an order may end that much sooner than its whole steps
+            least_ms = self.clock.least_ms - tail_ms + least_tail_ms
+            least_ms -= (
+                least_ms % STEP_MS if least_tail_ms else 0
+            )  # an order may end that much sooner than its whole steps
             self._shortest_ms = least_ms if self._shortest_ms is None else min(self._shortest_ms, least_ms)
 
 

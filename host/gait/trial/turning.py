@@ -123,6 +123,10 @@ class Turning:
         now_ms = self._clock.now_ms
         return max((max(j.begin_ms + j.order.time_ms - now_ms, 0) for j in self.joints if j.order), default=0)
 
+    def least_tail_ms(self) -> int:
+        """Return the same: no joint arrives early."""
+        return self.tail_ms()
+
     def finish(self) -> None:
         """Hold to account how long each joint was left alone, up to the end of the program."""
         for joint, trial in enumerate(self.joints):
