@@ -42,12 +42,11 @@ class Editor:
         return self._verdict(uri)
 
     def type(self, uri, *texts):
-        """Send the states that a text goes through, all at once, and return what is wrong with the last one."""
-        for text in texts:
-            self._version += 1
-            item = types.VersionedTextDocumentIdentifier(self._version, uri)
-            change = types.TextDocumentContentChangeWholeDocument(text)
-            self.client.text_document_did_change(types.DidChangeTextDocumentParams(item, [change]))
+        """Send the states that a text goes through, in one message, and return what is wrong with the last one."""
+        self._version += 1
+        item = types.VersionedTextDocumentIdentifier(self._version, uri)
+        changes = [types.TextDocumentContentChangeWholeDocument(text) for text in texts]
+        self.client.text_document_did_change(types.DidChangeTextDocumentParams(item, changes))
         return self._verdict(uri)
 
     def at(self, uri, line, column):

@@ -47,13 +47,13 @@ def test_limits_of_the_robot_and_mistakes_of_the_language_are_told_with_code_ran
     assert "E302" in [each.code for each in beyond]
 
 
-def test_only_the_newest_of_many_versions_is_told(editor):
+def test_only_the_last_of_many_states_is_looked_at(editor):
     texts = [HEAD + f"fire A at 60 % for {time} s\n" for time in range(40, 0, -1)]
     editor.open(HERE, texts[0])
     before = len(editor.versions)
 
     assert editor.type(HERE, *texts[1:]) == []
-    assert len(editor.versions) - before < len(texts) // 2
+    assert len(editor.versions) - before <= 3  # what is wrong, and what a model of the robot adds, also to the first
 
 
 def test_columns_are_counted_in_utf_16_units(editor):
