@@ -19,7 +19,7 @@ from host.robot import ENDS, Robot
 from host.run import TELEMETRY_MS
 from protocol import messages, program
 from protocol.link import Link
-from tests import limb_jobs
+from tests import job_programs, limb_jobs
 from tests.witness import profile_text
 
 COOL_MS = 1500
@@ -66,9 +66,9 @@ def upload_orders(link: SimLink, draw: Random, until_s: float) -> None:
     robot = connected(link)
     while link.now_s() < until_s:
         ops = [_op(draw, robot.profile) for _ in range(draw.randrange(1, 6))]
-        code = program.repeat(draw.randrange(1, 4)) + b"".join(ops) + program.next_() + program.halt()
+        code = job_programs.whole(ops, draw)
         flags = program.OUTLIVES_HOST if draw.random() < 0.2 else 0
-        _run(robot, program.header(code, robot.profile.crc, flags) + code, until_s)
+        job_programs.play(robot, program.header(code, robot.profile.crc, flags) + code, draw, until_s)
 
 
 def speak_bare(link: SimLink, draw: Random, until_s: float) -> None:
