@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from lark import Token
 from lark.exceptions import UnexpectedCharacters, UnexpectedInput, UnexpectedToken
 
@@ -44,6 +46,18 @@ NAMES = (  # a robot may be called as a statement is, a parameter as a word that
 SIGNS = {
     "EQUAL": "=", "LPAR": "(", "RPAR": ")", "LSQB": "[", "RSQB": "]", "COLON": ":", "COMMA": ",",
     "DOT": ".", "__ANON_0": "..",
+}  # fmt: skip
+
+FOREIGN = {  # what other languages call it, and what is written here
+    "if": "a robot chooses by `wait until ... timeout ... else LABEL`",
+    "while": "use `repeat 3:`, or `wait until ... timeout ... else continue`",
+    "loop": "use `repeat 3:`",
+    "//": "a comment begins with `#`",
+}
+LOOKALIKES = {
+    "°": "write `95 C` or `5 deg`", "Ω": "write `ohm`", "\u2126": "write `ohm`", "\u2212": "write `-`",
+    "\u2013": "write `-`, or `..` in a range", "'": 'write `"`', "\u201c": 'write `"`', "\u201e": 'write `"`',
+    "\u00a0": "write an ordinary blank", ";": "one statement a line, and nothing at its end",
 }  # fmt: skip
 
 
@@ -123,9 +137,15 @@ class _Reader:
             help = "this word belongs to a statement: put it on the line of its `fire`, `move`, `press` or `wait`"
             return self._word("E107", f"`{word}` does not begin a statement", help)
         if word.isidentifier() and word not in FORMS and self.accepts == {"LPAR"}:
-            near = did_you_mean(word, FORMS)
+            near = FOREIGN.get(word) or did_you_mean(word, FORMS) or self._instead(word)
             return self._word("E107", f"`{word}` is no statement", near or f"statements are: {', '.join(FORMS)}")
         return None
+
+    def _instead(self, word: str) -> str:
+        if self.kind == "EQUAL":
+            return f"name a value with `param {word} = ...`"
+        alone = code_part(self.lines[self.line - 1]).strip() == word
+        return f"to call a def, write `{word}()`" if alone else ""
 
     def _missing(self) -> Diagnostic | None:
         what = "a value" if "NUMBER" in self.accepts and "NAME" not in self.accepts else ""
@@ -154,9 +174,20 @@ class _Reader:
     def _any(self) -> Diagnostic:
         thing = "the end of the line" if self.ends else f"`{self.text}`"
         near = did_you_mean(self.text, [word.lower() for word in self.accepts if word.lower() in KEYWORDS])
-        if self.text == "," and self._before()[-1:].isdigit():
-            near = "write decimals with a point: 0.7"
+        near = self._sign() or near or FOREIGN.get(self.first, "")
         return self._here("E101", f"{thing} is not expected here", near or self._form() or self._expected())
+
+    def _sign(self) -> str:
+        """Return what to write for a comma, or for a name where a value is needed."""
+        before, after = self._before(), self.lines[self.line - 1][self.column :]
+        whole, part = re.search(r"\d+$", before), re.match(r"\d+", after)
+        if self.text == "," and whole and part:
+            return f"write decimals with a point: {whole[0]}.{part[0]}"
+        if self.text == "," and self.first in ("fire", "hold", "move") and before.split()[1:]:
+            return "name them one after another, without commas: `A B`"
+        if self.kind == "NAME" and "REFERENCE" in self.accepts and "NAME" not in self.accepts:
+            return f"write `${self.text}` for the value of a name"
+        return ""
 
     def _expected(self) -> str:
         if "FIRE" in self.accepts:
@@ -206,7 +237,7 @@ def _say_character(error: UnexpectedCharacters, shifts: list[int], lines: list[s
         return _at(name, error.line, column, "E113", "the text is not closed", line, 'close it with `"`')
     if sign == "$":
         return _at(name, error.line, column, "E109", "a name is missing after `$`", line)
-    return _at(name, error.line, column, "E108", f"`{sign}` has no meaning here", line)
+    return _at(name, error.line, column, "E108", f"`{sign}` has no meaning here", line, LOOKALIKES.get(sign, ""))
 
 
 def _at(name: str, line: int, column: int, code: str, message: str, source: str, help: str = "") -> Diagnostic:

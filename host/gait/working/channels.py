@@ -55,7 +55,8 @@ def channel(node: tree.Coil, scope: Scope) -> int | None:
         _cell(node, node.text, scope)
     elif node.text not in masks:
         message = f"the robot {scope.profile.robot} has no {scope.word()} `{node.text}`"
-        help = did_you_mean(node.text, masks) or f"it has: {' '.join(masks)}"
+        near = f"write `${node.text}` for what the name stands for" if node.text in scope.known else ""
+        help = near or did_you_mean(node.text, masks) or f"it has: {' '.join(masks)}"
         scope.problems.add(node.place, "E131", message, help)
     return masks.get(node.text)
 
