@@ -3,6 +3,7 @@
 import json
 from random import Random
 
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -99,6 +100,23 @@ def test_a_wait_that_runs_out_ends_within_its_longest_time():
     bare = Bare(made.code)
 
     assert bare.run() == TIMED_OUT
+    assert bare.now_ms - STEP_MS <= check(made).longest_ms
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "wait 13 ms\n" + 'note "x"\n' * 40,
+        "repeat 3:\n    " + 'note "x"\n    ' * 21 + "fire A at 5 % for 3 ms overlap 3 ms\n    wait 1 ms",
+        'note "x"\n' * 200 + "wait until A.temperature > 60 C timeout 1 ms else abort",
+    ],
+)
+def test_more_than_a_control_step_takes_is_late_within_the_longest_time(body):
+    made = compiled(body)
+    bare = Bare(made.code)
+
+    bare.run()
+
     assert bare.now_ms - STEP_MS <= check(made).longest_ms
 
 

@@ -16,6 +16,7 @@ from host.gait.diagnostics import Problems, in_order
 from host.gait.plan import Delay, Guard, Label, Loop, OnFault, Op, Press, Wait, walk
 from host.gait.tree import Place
 from host.gait.trial.coiltrial import STEP_MS
+from host.gait.trial.lag import Lag
 from host.gait.trial.trial import TooLong, Trial
 from host.gait.verdict import CoilReport, JointReport, Report
 from host.gait.working.bounds import hold_to_limits, nested
@@ -39,7 +40,7 @@ def check(compiled: Compiled) -> Report:
     return Report(
         script=compiled.script.main.name,
         profile=profile,
-        longest_ms=_longest_ms(compiled.plan) + trial.tail_ms + STEP_MS,
+        longest_ms=_longest_ms(compiled.plan) + Lag().play(compiled.plan).total_ms() + trial.tail_ms + STEP_MS,
         shortest_ms=trial.shortest_ms,
         coils=tuple(_coils(profile, trial)),
         joints=tuple(_joints(profile, trial)),
