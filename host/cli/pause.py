@@ -17,7 +17,8 @@ def command(robot: str, leave: bool, as_json: bool) -> None:
     """Take over the program that a robot runs and have it stand still: nothing new begins.
 
     What is on its way ends by itself, and guards go on guarding. `softrig resume` has it go on, `softrig step` by one
-    step. Of a run of your own, `softrig run --step` does the same with keys.
+    step. It needs a line for two hosts, as CAN is: a serial port belongs to the run that opened it, and a `sim:`
+    address to one command. There `softrig run --step` does the same with keys.
     """
     with taken_over(robot) as face:
         face.pause()
