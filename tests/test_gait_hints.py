@@ -2,7 +2,8 @@
 
 import pytest
 
-from tests.gait_scripts import diagnostics
+from host.gait.checker import check
+from tests.gait_scripts import compiled, diagnostics
 
 FIRE = "fire A at 60 % for 600 ms"
 HINTS = (
@@ -28,3 +29,9 @@ HINTS = (
 @pytest.mark.parametrize(("body", "hint"), HINTS, ids=[body.split("\n")[-1] for body, _ in HINTS])
 def test_the_first_mistake_of_a_beginner_comes_with_what_to_write(body: str, hint: str) -> None:
     assert hint in diagnostics(body)[0].help
+
+
+def test_one_step_is_not_said_to_be_several():
+    lines = list(check(compiled(FIRE)).lines())
+
+    assert [line.split(", ")[1] for line in lines if line.startswith("  program")] == ["1 step"]
