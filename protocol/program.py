@@ -47,7 +47,7 @@ AIMS_MAX = 4  # places for coils that the robot chose
 CIRCLE_MAX = 8  # coils of a circle
 NO_COIL = 255  # fills a circle that has fewer
 KEEP = 0x8000  # bit of a cut-off: the coil is kept near that temperature instead of ended
-TIME_MAX_MS = (1 << 30) - 1  # that a condition may ask for
+TIME_MAX_MS = (1 << 30) - 1  # of a delay, a time-out, a condition
 LABELS_MAX = 8
 ON_FAULT = 255  # label of what runs when the program is aborted; it stands behind a halt
 

@@ -188,6 +188,9 @@ def _check_arguments(code: bytes, at: int) -> None:
         raise program.BadProgram(f"duty {duty_permille} permille, at most 1000", at)
     if duty_at and program.number(code, at + duty_at + 4, 2) == program.KEEP:
         raise program.BadProgram("a coil that is to be kept at no temperature", at)
+    time_at = 1 if op == program.DELAY else 9 if op == program.WAIT else 0
+    if time_at and program.number(code, at + time_at, 4) > program.TIME_MAX_MS:
+        raise program.BadProgram(f"a time beyond {program.TIME_MAX_MS} ms", at)
     if op == program.REPEAT and program.number(code, at + 1, 2) == 0:
         raise program.BadProgram("a loop of no turns", at)
     if op == program.PRESS and program.number(code, at + 3, 2) > program.number(code, at + 5, 4):

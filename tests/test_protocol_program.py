@@ -186,6 +186,8 @@ BAD = {
         program.wait(CONDITION, 1, 2) + AIM + program.label(0) + program.aimed(0, 1, 1) + program.halt(),
         "no coil",
     ),
+    "a delay beyond the clock": (program.delay(1 << 30) + program.halt(), "a time beyond"),
+    "a time-out beyond the clock": (program.wait(CONDITION, 1 << 30, 1) + program.halt(), "a time beyond"),
     "a time beyond the clock": (program.guard(Condition(16, 0, 1, 0, 1 << 30)) + program.halt(), "a time of"),
     "too long": (program.delay(1) * 30 + program.halt(), "at most 100"),
 }
