@@ -21,6 +21,7 @@ from host.stream import AT, SLOT, unrolled
 from protocol import codes, program
 
 HELP = "Enter: this step; a number: so many; r: run on, Enter pauses; q: end the program"
+WAITING = HELP.replace(", Enter pauses", " to the end (virtual time: no key is heard meanwhile)")
 RUN_ON, QUIT = "r", "q"
 
 
@@ -48,7 +49,7 @@ class Stepper:
         self._shown = self._runs = False  # shown: the step that comes next
         self._left = 0  # steps that go without being asked about
         self._ended = False
-        self._tell(HELP)
+        self._tell(WAITING if self._waits else HELP)
 
     def take(self, record: Record) -> None:
         """Look at a record from the robot, and then for a line from the operator."""
@@ -102,7 +103,7 @@ class Stepper:
             self._left = int(line or 1) - 1
             self._robot.step()
         else:
-            self._tell(HELP)
+            self._tell(WAITING if self._waits else HELP)
 
     def _leave(self) -> None:
         """Take it that the program runs."""

@@ -5,7 +5,7 @@ import pytest
 from host.gait.compiler import compile_script
 from host.gait.script import loads
 from host.run import run
-from host.stepping import HELP, Stepper
+from host.stepping import WAITING, Stepper
 from tests.hil_rig import HilRig
 
 SCRIPT = """\
@@ -53,7 +53,7 @@ def test_each_step_is_shown_before_it_begins(gone_through, is_streamed):
     ending, told, events = gone_through("", "", "", "", "", is_streamed=is_streamed)
 
     assert ending.result == "done"
-    assert told[0] == HELP
+    assert told[0] == WAITING
     assert [line[:34] for line in told[1:]] == [
         f"next is step {step}: fire {coil} at 30 % for"
         for step, coil in ((1, "A"), (2, "B"), (1, "A"), (2, "B"), (3, "C"))
@@ -87,7 +87,7 @@ def test_what_is_no_line_to_obey_is_answered_with_those_there_are(gone_through):
     ending, told, _ = gone_through("faster", "0", "r")
 
     assert ending.result == "done"
-    assert told.count(HELP) == 3
+    assert told.count(WAITING) == 3
 
 
 def test_a_program_that_runs_is_paused_in_the_middle_of_a_step(gone_through):

@@ -35,7 +35,7 @@ from host.view import check_pictures, draw_run
 @click.option("--plot", "plot_path", type=click.Path(path_type=Path), metavar="FILE.svg", help="Draw the run.")
 @click.option("--from", "begin", type=int, default=1, metavar="STEP", help="Begin with a step that a run told of.")
 @click.option("--stream", is_flag=True, help="Send the program while it runs: it need not fit into the robot.")
-@click.option("--step", "by_hand", is_flag=True, help="Stand still before each step until a key is pressed.")
+@click.option("--step", "by_hand", is_flag=True, help="Stand still before each step until Enter is pressed.")
 @if_lost_options
 @click.option("--outlive", is_flag=True, help="The program goes on should this host die; `softrig attach` takes it up.")
 @without_option
