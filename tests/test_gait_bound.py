@@ -1,9 +1,11 @@
 """The worst case that the checker tells of a script, held against what the bench then measures.
 
 Random scripts of the whole language that keep the limits run on a healthy robot of the bench: none is refused, none
-trips a limit, none lasts longer, heats longer or takes more energy than was told.
+trips a limit, none lasts longer, heats longer or takes more energy than was told. Fingers are left out: what they grip
+may stall a servo that is told to go through it, and no checker knows the object.
 """
 
+import os
 from functools import cache
 
 import pytest
@@ -20,11 +22,11 @@ from host.run import run
 from tests.gait_scripts import profile_of
 from tests.gait_strategy import examples, scripts
 
-BODIES = {"circular": "body=still", "sphere-b": "body=still", "fingers-experiment": "", "press": "indenter=flat"}
+BODIES = {"circular": "body=still", "sphere-b": "body=still", "press": "indenter=flat"}
 LONGEST_MS = 8000
 SWITCHED_MS = 1  # within which the chip has heard what a control step ordered, at either end of an order
 TESTED_MS = 3  # of the test before arming
-ENDS = ("done", "timeout", "guard", "camera lost")
+ENDS = ("done", "timeout", "guard")
 
 
 def ran(robot, made):
@@ -61,7 +63,13 @@ def full_w(profile):
 
 @pytest.mark.parametrize("robot", BODIES)
 def test_what_the_checker_passes_keeps_its_worst_case_on_the_bench(robot):
-    @settings(max_examples=examples(3), deadline=None, phases=[Phase.generate], suppress_health_check=list(HealthCheck))
+    @settings(
+        max_examples=examples(3),
+        deadline=None,
+        phases=[Phase.generate],
+        derandomize="SOFTRIG_EXAMPLES" not in os.environ,
+        suppress_health_check=list(HealthCheck),
+    )
     @given(st.data())
     def holds(data):
         made = compiled(robot, data.draw(scripts(profile_of(robot))))
