@@ -92,7 +92,8 @@ class Report:
         if self.coils:
             yield f"  at once   {self.at_once} of {supply.at_once_max} coils"
             yield f"  supply    {self.current_ma} of {supply.current_max_ma} mA"
-        yield f"  program   {self.program_bytes} of {self.profile.program.bytes_max} bytes, {self.steps} step{'s' * (self.steps != 1)}"
+        steps = f"{self.steps} step{'s' * (self.steps != 1)}"
+        yield f"  program   {self.program_bytes} of {self.profile.program.bytes_max} bytes, {steps}"
         if self.force_mn and self.profile.load:
             yield f"  force     {self.force_mn / 1000:g} of {self.profile.load.most_mn / 1000:g} N"
         yield from self._coil_lines()
