@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from docs.protocolpage import ARGUMENTS
-from host.gait import units
-from host.gait.reading import lines
+from host.gait import script, units
+from host.gait.reading import lines, parser
 from host.gait.units import Quantity
-from host.gait.working import clauses, motions, sources
+from host.gait.working import clauses, expand, motions, sources
 from host.gait.working.expand import COUNT_MAX
 from host.gait.working.orders import CUTOFF_MAX_DECIDEGC
 from protocol import program
@@ -136,6 +136,8 @@ def fields(table: Table) -> dict[str, str]:
         "ops": table(("op", "bytes", "name", "arguments", "made of"), list(_ops())),
         "grammar": grammar(),
         "count_max": str(COUNT_MAX), "lines_max": str(lines.LINES_MAX), "line_max": str(lines.LINE_MAX),
+        "blocks_max": str(parser.DEPTH_MAX), "includes_max": str(script.INCLUDES_MAX),
+        "calls_max": str(expand.DEPTH_MAX),
         "depth_max": str(program.DEPTH_MAX), "guards_max": str(program.GUARDS_MAX), "aims_max": str(program.AIMS_MAX),
         "circle_max": str(program.CIRCLE_MAX), "labels_max": str(program.LABELS_MAX),
         "header_bytes": str(program.HEADER_BYTES), "format": str(program.FORMAT),
