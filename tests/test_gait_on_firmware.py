@@ -195,3 +195,16 @@ def test_whatever_coils_the_robot_chooses_none_goes_beyond_the_worst_case(body, 
     for channel, coil in enumerate(worst.coils):
         assert bare.on_ms[channel] <= coil.on_ms
         assert bare.heat_uj[channel] <= coil.heat_peak_mj * 1000
+
+
+def test_what_an_order_heats_until_a_pile_of_notes_lets_the_next_one_begin_is_in_its_peak():
+    pile = 'note "n"\n' * 40
+    made = compiled(f"fire A at 80 % for 100 ms overlap 50 ms\n{pile}fire A at 0.1 % for 5 ms\nwait 10 ms")
+    bare = Bare(made.code)
+
+    assert bare.run() == FINISHED
+
+    worst = check(made).coils[0]
+    assert bare.heat_uj[0] > 380 * 0.8 * 50  # the first order went on for longer than the script says
+    assert bare.heat_uj[0] <= worst.heat_peak_mj * 1000
+    assert bare.on_ms[0] <= worst.on_ms

@@ -21,6 +21,7 @@ from host.gait.diagnostics import Problems
 from host.gait.plan import Aim, Fire, Op, Wait, walk
 from host.gait.trial.clock import Clock
 from host.gait.trial.coiltrial import STEP_MS, CoilTrial, energy_uj, heat_uj
+from host.gait.trial.lag import Lag
 from host.profile import Profile
 from protocol import program
 
@@ -38,6 +39,7 @@ class Heating:
         self.full_uw = 0
         self._profile, self._problems, self._clock = profile, problems, clock
         self._best: list[CoilTrial] = []
+        self._lag_ms = 0  # by which an order may begin late, while the one before goes on
         if not self._count:
             return
         self._limits = profile.coil
@@ -57,7 +59,8 @@ class Heating:
         return (self._best or self._all)[: self._count]
 
     def expect(self, plan: Sequence[Op]) -> None:
-        """Learn which coils each name may stand for."""
+        """Learn which coils each name may stand for, and how late an order may come."""
+        self._lag_ms = Lag().play(plan).peak_ms
         for op in walk(plan):
             if isinstance(op, Aim):
                 self._all[self._count + op.kept].reach |= sum(1 << channel for channel in op.circle)
@@ -281,7 +284,7 @@ class Heating:
         """Take back what the old order has not had; if a wait came between, it may have had all of it."""
         left_ms = had_ms = coil.off_ms - self._clock.now_ms
         if coil.end_ms > self._clock.now_ms and coil.waits == self._clock.waits:
-            had_ms = (coil.begin_ms - self._clock.now_ms) % STEP_MS
+            had_ms = min(left_ms, (coil.begin_ms - self._clock.now_ms) % STEP_MS + self._lag_ms)
         coil.cut(left_ms, had_ms)
 
     def _switch_off(self, coil: CoilTrial) -> None:
@@ -289,7 +292,7 @@ class Heating:
         left_ms = had_ms = coil.off_ms - self._clock.now_ms
         coil.since_ms = self._since_ms(coil)
         if coil.waits == self._clock.waits:
-            had_ms = min(left_ms, 2 * STEP_MS)
+            had_ms = min(left_ms, 2 * STEP_MS + self._lag_ms)
         coil.cut(left_ms, had_ms)
         coil.end_ms = coil.off_ms = self._clock.now_ms
 

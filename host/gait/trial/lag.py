@@ -18,10 +18,11 @@ class Lag:
     late_ms: int = 0
     behind: int = 0
     passed_ms: int = 0  # since the first of them was due
+    peak_ms: int = 0  # the most by which a single op came after it was due
 
     def total_ms(self) -> int:
         """Return by how much the plan is late in all."""
-        return self.late_ms + max(self.behind - 1, 0) // OPS_PER_STEP * STEP_MS
+        return self.late_ms + self._waiting_ms()
 
     def play(self, ops: Iterable[Op]) -> Lag:
         """Let these ops come due; of a loop two turns, which the others are like."""
@@ -37,6 +38,7 @@ class Lag:
             if not isinstance(op, Guard):
                 self.behind += op.step != step
                 step = op.step
+            self.peak_ms = max(self.peak_ms, self._waiting_ms())
             if isinstance(op, Delay):
                 self._pass(op.time_ms)
             elif isinstance(op, Wait):
@@ -53,6 +55,11 @@ class Lag:
         if loop.count > 2:
             self.late_ms += (loop.count - 2) * (self.late_ms - late_ms)
             self.behind += (loop.count - 2) * max(self.behind - behind, 0)
+            self.peak_ms = max(self.peak_ms, self._waiting_ms())
+
+    def _waiting_ms(self) -> int:
+        """Return for how long the last of the ops that are due waits for its turn."""
+        return max(self.behind - 1, 0) // OPS_PER_STEP * STEP_MS
 
     def _pass(self, time_ms: int) -> None:
         """Let the steps pass that lie within a time, wherever it begins."""
