@@ -1,7 +1,8 @@
 """The firmware that runs in CPython and the one that runs in real MicroPython do the same thing at the same time.
 
 One hash covers every bus transfer, pin edge, conversion, flash operation and byte on the line with its time: it is
-compared over whole scripts, with faults, looked at often or seldom, and is shown to feel the smallest difference.
+compared over whole scripts and the beginning of all, with faults, looked at often or seldom, and is shown to feel the
+smallest difference.
 """
 
 import json
